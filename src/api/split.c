@@ -5,7 +5,7 @@
 #include "api/inside.h"
 
 #include <string.h>
-#include "base/struct_bytes.h"
+#include "base/structs.h"
 #include "topology/corners.h"
 #include "topology/split.h"
 

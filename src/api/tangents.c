@@ -10,12 +10,10 @@
 #include <stddef.h>
 #include <string.h>
 #include "api/inside.h"
-#include "base/clock.h"
-#include "base/counts.h"
 #include "base/cpu.h"
+#include "base/deadline.h"
 #include "base/parallel.h"
-#include "base/pool.h"
-#include "base/struct_bytes.h"
+#include "base/structs.h"
 #include "base/vec.h"
 #include "tangent/fast/fast.h"
 #include "tangent/frames.h"

@@ -13,7 +13,7 @@
 #include "api/inside.h"
 
 #include <string.h>
-#include "base/clock.h"
+#include "base/deadline.h"
 #include "base/parallel.h"
 #include "tangent/frames.h"
 #include "topology/corners.h"

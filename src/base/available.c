@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * How much memory this process may take: see available.h. A limit that cannot be read does not count.
+ * How much memory this process may take: see memory.h. A limit that cannot be read does not count.
  */
-#include "base/available.h"
+#include "base/memory.h"
 
 #include <inttypes.h>
 #include <stdio.h>

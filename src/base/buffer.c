@@ -1,15 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Growing bytes: see buffer.h.
+ * Growing bytes: see text.h.
  */
-#include "base/buffer.h"
+#include "base/text.h"
 
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include "base/memory.h"
-#include "base/utf8.h"
 
 void *nt_buffer_extend(nt_buffer *buffer, size_t size)
 {

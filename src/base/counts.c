@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * See counts.h: the one place outside of nmtan.h that lists what is counted.
+ * See structs.h: the one place outside of nmtan.h that lists what is counted.
  */
-#include "base/counts.h"
+#include "base/structs.h"
 
 void nt_counts_add(nmtan_counts *sum, const nmtan_counts *part)
 {

@@ -1,14 +1,31 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * When the work of a thread, and of the pool's threads that help it, is to end. From then on memory is refused, by
- * which every step knows how to fail; long loops that ask for none ask here. The caller that set a deadline says that
- * it was the reason.
+ * Time: how long something took, and when work is to end.
  */
 #ifndef NT_BASE_DEADLINE_H
 #define NT_BASE_DEADLINE_H
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <time.h>
+
+/* Wall-clock seconds from an arbitrary start. */
+static inline double nt_seconds(void)
+{
+#ifdef _WIN32
+	return (double)clock() / CLOCKS_PER_SEC; /* of the wall, there */
+#else
+	struct timespec time;
+	clock_gettime(CLOCK_MONOTONIC, &time);
+	return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
+#endif
+}
+
+/*
+ * A deadline: when the work of a thread, and of the pool's threads that help it, is to end. From then on memory is
+ * refused, by which every step knows how to fail; long loops that ask for none ask here. The caller that set a deadline
+ * says that it was the reason.
+ */
 
 /* The library alone has none. */
 #ifdef NT_NO_DEADLINES

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Errors with a place: see error.h. Messages are cut at the size of their field; nothing here
+ * Errors with a place: see text.h. Messages are cut at the size of their field; nothing here
  * allocates, so that "out of memory" can always be said.
  */
-#include "base/error.h"
+#include "base/text.h"
 
 #include <stdarg.h>
 #include <stdio.h>

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The largest of many numbers, and whether all are below a limit: see largest.h.
+ * The largest of many numbers, and whether all are below a limit: see numbers.h.
  */
-#include "base/largest.h"
+#include "base/numbers.h"
 
 uint32_t nt_largest(const uint32_t *values, size_t count)
 {

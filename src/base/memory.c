@@ -10,7 +10,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include "base/deadline.h"
-#include "base/pages.h"
 
 enum {
 	LEAST_BLOCK_BYTES = 4 * 1024,

@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Memory, by sizes that are checked.
+ * Memory of the tool, by sizes that are checked: blocks, arenas, and how much there is.
  */
 #ifndef NT_BASE_MEMORY_H
 #define NT_BASE_MEMORY_H
 
-#include "base/size.h"
+#include <stddef.h>
+#include <stdint.h>
+#include "base/scratch.h"
 
 /* malloc(count * size) and calloc; NULL on overflow or exhaustion. A count of 0 gives a block that can
  * be freed. */
@@ -41,5 +43,15 @@ void nt_arena_clear(nt_arena *arena);
 
 /* Frees everything; the arena is empty afterwards. */
 void nt_arena_free(nt_arena *arena);
+
+/* ---- how much memory this process may take ---- */
+
+/* Bytes that the system could give without swapping (MemAvailable), but at most what the control groups of this process
+ * (memory.max; memory.limit_in_bytes of version 1) and its address space (ulimit -v) are limited to; UINT64_MAX where
+ * nothing says. Page cache counts as available, so this is a guess about what others do. */
+uint64_t nt_memory_available(void);
+
+/* The part of it that is about control groups: `list` is /proc/self/cgroup, `root` /sys/fs/cgroup. */
+uint64_t nt_memory_of_groups(const char *list, const char *root);
 
 #endif

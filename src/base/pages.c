@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Large blocks of memory: see pages.h.
+ * Large blocks of memory: see scratch.h.
  */
-#include "base/pages.h"
+#include "base/scratch.h"
 
 #include <stdint.h>
 #include <stdlib.h>

@@ -6,7 +6,6 @@
 #include "base/parallel.h"
 
 #include "base/compiler.h"
-#include "base/pool.h"
 
 unsigned nt_thread_count(unsigned requested)
 {

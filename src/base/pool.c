@@ -1,17 +1,16 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Threads that wait for work: see pool.h.
+ * Threads that wait for work: see parallel.h.
  *
  * A region lives on its caller's stack and is linked into the pool's list while slots of it may be free. Caller
  * and helpers take slots from one counter. The lock covers the list and the counts, never a body; a region is
  * entered by two short critical sections and, if a thread sleeps, one wake-up.
  */
-#include "base/pool.h"
+#include "base/parallel.h"
 
 #include <stdbool.h>
 #include "base/compiler.h"
 #include "base/deadline.h"
-#include "base/lock.h"
 
 /* ---- threads of the caller ---- */
 

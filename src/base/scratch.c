@@ -8,8 +8,6 @@
 
 #include <stdint.h>
 #include <stdlib.h>
-#include "base/size.h"
-#include "base/pages.h"
 
 enum { ALIGNMENT = 64, LEAST_BLOCK_BYTES = 64 * 1024 };
 

@@ -2,7 +2,7 @@
 /*
  * The words for a status of the tool.
  */
-#include "base/error.h"
+#include "base/text.h"
 
 const char *nt_status_text(nt_status status)
 {

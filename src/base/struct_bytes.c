@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Structs that grow: see struct_bytes.h. The rule is that of Linux's copy_struct_from_user().
+ * Structs that grow: see structs.h. The rule is that of Linux's copy_struct_from_user().
  */
-#include "base/struct_bytes.h"
+#include "base/structs.h"
 
 /* Far more than any struct will ever need: what is larger has not been initialised, and its tail may not be
  * there to be looked at. */

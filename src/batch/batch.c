@@ -11,10 +11,8 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "base/available.h"
 #include "base/memory.h"
 #include "base/parallel.h"
-#include "base/pool.h"
 #include "batch/gate.h"
 
 /* Shared by the threads of one batch. */

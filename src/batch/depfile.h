@@ -5,7 +5,7 @@
 #ifndef NT_BATCH_DEPFILE_H
 #define NT_BATCH_DEPFILE_H
 
-#include "base/buffer.h"
+#include "base/text.h"
 #include "file/trace.h"
 
 /* The text of a depfile; zeroed: no rules yet. */

@@ -11,8 +11,8 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "base/buffer.h"
 #include "base/hash_index.h"
+#include "base/text.h"
 #include "file/input.h"
 #include "file/lookup.h"
 #include "file/path.h"

@@ -6,8 +6,8 @@
 #ifndef NT_BATCH_INPUTS_H
 #define NT_BATCH_INPUTS_H
 
-#include "base/error.h"
 #include "base/memory.h"
+#include "base/text.h"
 
 /* Zeroed: empty. */
 typedef struct nt_inputs {

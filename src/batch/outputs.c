@@ -12,7 +12,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "base/buffer.h"
+#include "base/text.h"
 #include "file/lookup.h"
 #include "file/path.h"
 #include "file/uri.h"

@@ -9,8 +9,8 @@
 #ifndef NT_BATCH_RECORD_H
 #define NT_BATCH_RECORD_H
 
-#include "base/buffer.h"
 #include "base/hash_index.h"
+#include "base/text.h"
 
 typedef struct nt_record {
 	char *path;

@@ -11,7 +11,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "base/utf8.h"
+#include "base/text.h"
 #include "batch/inputs.h"
 #include "cli/options.h"
 #include "cli/own_files.h"

@@ -11,8 +11,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "base/counts.h"
 #include "base/hash.h"
+#include "base/structs.h"
 #include "cli/messages.h"
 #include "file/input.h"
 #include "file/lookup.h"

@@ -9,7 +9,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "base/counts.h"
+#include "base/structs.h"
 #include "file/lookup.h"
 #include "report/codes.h"
 

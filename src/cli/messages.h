@@ -10,7 +10,7 @@
 #ifndef NT_CLI_MESSAGES_H
 #define NT_CLI_MESSAGES_H
 
-#include "base/buffer.h"
+#include "base/text.h"
 #include "batch/batch.h"
 
 typedef struct nt_style {

@@ -7,7 +7,7 @@
 #ifndef NT_CLI_OPTIONS_H
 #define NT_CLI_OPTIONS_H
 
-#include "base/buffer.h"
+#include "base/text.h"
 #include "batch/update.h"
 #include "pipeline/run.h"
 

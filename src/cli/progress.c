@@ -13,7 +13,7 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "base/clock.h"
+#include "base/deadline.h"
 #include "cli/messages.h"
 
 /* A quarter of a second: quick enough for the eye, nothing to the processor. */

@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
-#include "base/utf8.h"
+#include "base/text.h"
 
 bool nt_say(nt_buffer *text)
 {

@@ -6,7 +6,7 @@
 #ifndef NT_CLI_SAY_H
 #define NT_CLI_SAY_H
 
-#include "base/buffer.h"
+#include "base/text.h"
 #include "cli/messages.h"
 
 /* Prints a text and empties the buffer, which keeps its memory. False where memory was too short to build the

@@ -14,7 +14,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 #include "base/parallel.h"
-#include "base/utf8.h"
+#include "base/text.h"
 #include "batch/depfile.h"
 #include "cli/failures.h"
 #include "cli/manifest.h"

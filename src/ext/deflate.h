@@ -5,7 +5,7 @@
 #ifndef NT_EXT_DEFLATE_H
 #define NT_EXT_DEFLATE_H
 
-#include "base/buffer.h"
+#include "base/text.h"
 
 #ifdef __cplusplus
 extern "C" {

@@ -11,7 +11,7 @@
 
 #include <stdlib.h>
 #include <string.h>
-#include "base/error.h"
+#include "base/text.h"
 #include "ext/gltf_numbers.h"
 
 #ifdef __cplusplus

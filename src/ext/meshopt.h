@@ -10,7 +10,7 @@
 #ifndef NT_EXT_MESHOPT_H
 #define NT_EXT_MESHOPT_H
 
-#include "base/error.h"
+#include "base/text.h"
 
 #ifdef __cplusplus
 extern "C" {

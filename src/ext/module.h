@@ -10,7 +10,7 @@
 #ifndef NT_EXT_MODULE_H
 #define NT_EXT_MODULE_H
 
-#include "base/error.h"
+#include "base/text.h"
 
 typedef enum nt_module {
 	NT_MODULE_DRACO,

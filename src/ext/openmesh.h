@@ -13,7 +13,7 @@
 #ifndef NT_EXT_OPENMESH_H
 #define NT_EXT_OPENMESH_H
 
-#include "base/error.h"
+#include "base/text.h"
 
 #ifdef __cplusplus
 extern "C" {

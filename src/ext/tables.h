@@ -6,7 +6,7 @@
 #ifndef NT_EXT_TABLES_H
 #define NT_EXT_TABLES_H
 
-#include "base/error.h"
+#include "base/text.h"
 #include "ext/draco.h"
 #include "ext/meshopt.h"
 #include "ext/openmesh.h"

@@ -6,7 +6,7 @@
 #ifndef NT_EXT_TINYGLTF_H
 #define NT_EXT_TINYGLTF_H
 
-#include "base/error.h"
+#include "base/text.h"
 
 #ifdef __cplusplus
 extern "C" {

@@ -6,7 +6,7 @@
 #ifndef NT_FILE_BASE64_H
 #define NT_FILE_BASE64_H
 
-#include "base/buffer.h"
+#include "base/text.h"
 #include "file/output.h"
 
 /* Zeroed but for the sink. */

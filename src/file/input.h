@@ -5,7 +5,7 @@
 #ifndef NT_FILE_INPUT_H
 #define NT_FILE_INPUT_H
 
-#include "base/error.h"
+#include "base/text.h"
 #include "ext/digest.h"
 
 /* An input's bytes. */

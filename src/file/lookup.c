@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
-#include "base/buffer.h"
+#include "base/text.h"
 #include "file/trace.h"
 
 nt_status nt_lookup_failed(const char *path, int number, nt_error *error)

@@ -7,7 +7,7 @@
 #define NT_FILE_LOOKUP_H
 
 #include <sys/stat.h>
-#include "base/error.h"
+#include "base/text.h"
 
 /*
  * The status for an errno of looking for a file: NT_ERROR_MISSING for ENOENT and ENOTDIR, and for names that are longer

@@ -12,7 +12,7 @@
 #ifndef NT_FILE_OUTPUT_H
 #define NT_FILE_OUTPUT_H
 
-#include "base/buffer.h"
+#include "base/text.h"
 #include "file/input.h"
 
 typedef struct nt_output nt_output;

@@ -9,7 +9,7 @@
 
 #include <limits.h>
 #include <stdbool.h>
-#include "base/buffer.h"
+#include "base/text.h"
 
 /* ---- as it is spelled ---- */
 

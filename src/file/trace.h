@@ -10,8 +10,8 @@
 #define NT_FILE_TRACE_H
 
 #include <sys/stat.h>
-#include "base/error.h"
 #include "base/hash_index.h"
+#include "base/text.h"
 
 typedef enum nt_trace_kind {
 	NT_TRACE_READ,

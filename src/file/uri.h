@@ -5,8 +5,8 @@
 #ifndef NT_FILE_URI_H
 #define NT_FILE_URI_H
 
-#include "base/buffer.h"
 #include "base/memory.h"
+#include "base/text.h"
 
 /* Whether a URI carries its data. */
 bool nt_uri_is_data(const char *uri, size_t length);

@@ -14,7 +14,7 @@
 
 #include <stdbool.h>
 #include <sys/stat.h>
-#include "base/error.h"
+#include "base/text.h"
 
 /* Watches a map of a whole file, named by `path`, whose status was taken before it was mapped; a number for
  * nt_watch_end(). Below 0: too many are watched, so that the file has to be read instead. */

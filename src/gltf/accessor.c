@@ -10,8 +10,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include "base/largest.h"
-#include "base/lock.h"
+#include "base/numbers.h"
+#include "base/parallel.h"
 #include "gltf/quantize.h"
 
 /* Indices that an accessor without a bufferView may have: nothing in the file backs their number. */

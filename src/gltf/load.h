@@ -5,8 +5,8 @@
 #ifndef NT_GLTF_LOAD_H
 #define NT_GLTF_LOAD_H
 
-#include "base/error.h"
 #include "base/memory.h"
+#include "base/text.h"
 #include "ext/draco.h"
 #include "gltf/document.h"
 #include "scene/scene.h"

@@ -9,7 +9,7 @@
 
 #include <stdio.h>
 #include <string.h>
-#include "base/buffer.h"
+#include "base/text.h"
 #include "scene/transform.h"
 
 /* Demands of a slot. */

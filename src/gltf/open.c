@@ -14,7 +14,7 @@
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
-#include "base/buffer.h"
+#include "base/text.h"
 #include "file/lookup.h"
 #include "file/trace.h"
 #include "file/uri.h"

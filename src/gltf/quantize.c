@@ -13,7 +13,7 @@
 
 #include <math.h>
 #include <string.h>
-#include "base/dvec.h"
+#include "base/vec.h"
 #include "gltf/document.h"
 
 /* How far the decoded length may be from 1: below the validator's 0.00674, with room for its float

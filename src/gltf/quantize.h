@@ -8,7 +8,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 #include <string.h>
-#include "base/dvec.h"
+#include "base/vec.h"
 #include "ext/gltf_numbers.h"
 #include "scene/scene.h"
 

@@ -12,7 +12,7 @@
 
 #include <math.h>
 #include <string.h>
-#include "base/dvec.h"
+#include "base/vec.h"
 #include "ext/meshopt.h"
 #include "gltf/document.h"
 

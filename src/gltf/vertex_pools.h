@@ -10,10 +10,10 @@
 #ifndef NT_GLTF_VERTEX_POOLS_H
 #define NT_GLTF_VERTEX_POOLS_H
 
-#include "base/buffer.h"
 #include "base/hash_index.h"
-#include "scene/scene.h"
+#include "base/text.h"
 #include "gltf/document.h"
+#include "scene/scene.h"
 
 /* Keys, each of which gets a number. Zeroed: empty. */
 typedef struct nt_key_table {

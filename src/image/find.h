@@ -8,7 +8,7 @@
 #define NT_IMAGE_FIND_H
 
 #include <stdbool.h>
-#include "base/buffer.h"
+#include "base/text.h"
 
 /* Places to search. */
 typedef struct nt_image_places {

@@ -8,7 +8,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include "base/pages.h"
+#include "base/memory.h"
 #include "ext/number.h"
 #include "json/tree.h"
 

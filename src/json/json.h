@@ -16,8 +16,7 @@
 #define NT_JSON_JSON_H
 
 #include <string.h>
-#include "base/buffer.h"
-#include "base/error.h"
+#include "base/text.h"
 
 /* Arrays and objects may be nested this deep. */
 enum { NT_JSON_MAX_DEPTH = 512 };

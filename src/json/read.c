@@ -10,7 +10,7 @@
 #include <math.h>
 #include <stddef.h>
 #include <stdlib.h>
-#include "base/utf8.h"
+#include "base/text.h"
 #include "ext/number.h"
 #include "json/tree.h"
 

@@ -19,7 +19,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include "base/compiler.h"
-#include "base/utf8.h"
+#include "base/text.h"
 #include "file/decimal.h"
 #include "scene/srgb.h"
 

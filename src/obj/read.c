@@ -23,7 +23,7 @@
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
-#include "base/clock.h"
+#include "base/deadline.h"
 #include "base/parallel.h"
 #include "file/input.h"
 #include "obj/parts.h"

@@ -15,7 +15,7 @@
 
 #include <math.h>
 #include <string.h>
-#include "base/dvec.h"
+#include "base/vec.h"
 #include "report/maker/quads.h"
 #include "topology/corners.h"
 

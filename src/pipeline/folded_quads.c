@@ -13,7 +13,7 @@
 
 #include <stdlib.h>
 #include <string.h>
-#include "base/counts.h"
+#include "base/structs.h"
 #include "tangent/frames.h"
 #include "topology/corners.h"
 

@@ -24,11 +24,10 @@
 
 #include <stdio.h>
 #include <stdlib.h>
-#include "base/clock.h"
-#include "base/counts.h"
+#include "base/deadline.h"
 #include "base/hash.h"
 #include "base/parallel.h"
-#include "base/pool.h"
+#include "base/structs.h"
 #include "gltf/load.h"
 #include "scene/morphs.h"
 

@@ -13,7 +13,7 @@
 #include <string.h>
 #include "api/tangents.h"
 #include "base/angle.h"
-#include "base/dvec.h"
+#include "base/vec.h"
 #include "topology/corners.h"
 
 /* ---- gathering ---- */

@@ -25,8 +25,8 @@
 #include <stdlib.h>
 #include <string.h>
 #include "base/angle.h"
-#include "base/dvec.h"
 #include "base/hash_index.h"
+#include "base/vec.h"
 #include "gltf/quantize.h"
 #include "scene/morphs.h"
 

@@ -15,8 +15,8 @@
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
-#include "base/dvec.h"
 #include "base/parallel.h"
+#include "base/vec.h"
 #include "tangent/frames.h"
 
 /* Made normals less apart than this are one: rounding of positions makes some ten millionths of well-shaped triangles

@@ -12,7 +12,7 @@
 #include "pipeline/stages.h"
 
 #include <stdlib.h>
-#include "base/counts.h"
+#include "base/structs.h"
 #include "image/examine.h"
 #include "topology/corners.h"
 

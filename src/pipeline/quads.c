@@ -8,7 +8,7 @@
 #include "pipeline/stages.h"
 
 #include <stdlib.h>
-#include "base/bits.h"
+#include "base/numbers.h"
 #include "report/maker/maker.h"
 #include "report/maker/quads.h"
 #include "topology/corners.h"

@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include "base/clock.h"
+#include "base/deadline.h"
 #include "file/watch.h"
 #include "format/format.h"
 #include "format/normal_map.h"

@@ -15,9 +15,9 @@
 #include <stdlib.h>
 #include <string.h>
 #include "api/tangents.h"
-#include "base/counts.h"
 #include "base/hash.h"
-#include "base/pages.h"
+#include "base/memory.h"
+#include "base/structs.h"
 #include "gltf/load.h"
 #include "scene/morphs.h"
 #include "tangent/frames.h"

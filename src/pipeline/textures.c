@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include "base/utf8.h"
+#include "base/text.h"
 #include "file/lookup.h"
 #include "file/path.h"
 #include "file/uri.h"

@@ -9,7 +9,7 @@
 #include <math.h>
 #include <signal.h>
 #include <string.h>
-#include "base/clock.h"
+#include "base/deadline.h"
 #include "file/temporary.h"
 
 /* Time for a run to end by itself: most of the tenth of a second within which it is to be over. */

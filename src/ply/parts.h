@@ -12,10 +12,10 @@
 #include <float.h>
 #include <math.h>
 #include <string.h>
-#include "base/buffer.h"
-#include "base/dvec.h"
 #include "base/hash_index.h"
 #include "base/memory.h"
+#include "base/text.h"
+#include "base/vec.h"
 #include "file/output.h"
 #include "scene/scene.h"
 #include "scene/srgb.h"

@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "base/hash.h"
-#include "base/utf8.h"
+#include "base/text.h"
 
 static const float *position_of(const nt_check *check, const nt_rim_side *side, int end)
 {

@@ -12,7 +12,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include "base/utf8.h"
+#include "base/text.h"
 #include "scene/origin.h"
 #include "scene/select.h"
 

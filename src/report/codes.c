@@ -11,7 +11,7 @@
 #include <assert.h>
 #include <string.h>
 #include <strings.h>
-#include "base/utf8.h"
+#include "base/text.h"
 
 #define ROW(name, severity, profiles, advice, repair, message, meaning, remedy, example) \
 	[NT_CODE_##name] = {#name, NT_SEVERITY_##severity, profiles, NT_ADVICE_##advice, repair, message, meaning, \

@@ -7,7 +7,7 @@
 #ifndef NT_REPORT_CODES_H
 #define NT_REPORT_CODES_H
 
-#include "base/buffer.h"
+#include "base/text.h"
 #include "scene/finding.h"
 
 /* Actions for a finding. The greatest comes first: what has to be exported again, all else is made

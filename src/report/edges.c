@@ -15,9 +15,9 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include "base/dvec.h"
 #include "base/hash_index.h"
 #include "base/parallel.h"
+#include "base/vec.h"
 
 /* Points whose edges a thread takes at a time: some 300 KB. */
 enum { PART = 4096 };

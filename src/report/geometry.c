@@ -17,7 +17,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include "base/dvec.h"
+#include "base/vec.h"
 
 /* Sine of the rounding error from which on a triangle counts as nearly degenerate: of one degree. */
 static const double NEAR_DEGENERATE_SINE = 0.017452406437283512;

@@ -8,7 +8,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
-#include "base/error.h"
+#include "base/text.h"
 
 /* The key of a thing; 0: it has none. */
 typedef uint64_t (*nt_key_of)(const void *things, size_t index);

@@ -14,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "base/angle.h"
-#include "base/dvec.h"
+#include "base/vec.h"
 #include "scene/origin.h"
 
 /* A seam lies in a plane when its points keep within this part of the mesh's extent. */

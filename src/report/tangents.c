@@ -11,8 +11,8 @@
 #include <math.h>
 #include <string.h>
 #include "base/angle.h"
-#include "base/dvec.h"
 #include "base/parallel.h"
+#include "base/vec.h"
 #include "report/maker/maker.h"
 #include "report/maker/quads.h"
 #include "topology/corners.h"

@@ -7,9 +7,9 @@
 #ifndef NT_SCENE_FINDING_H
 #define NT_SCENE_FINDING_H
 
-#include "base/error.h"
 #include "base/hash_index.h"
 #include "base/memory.h"
+#include "base/text.h"
 
 typedef enum nt_severity { NT_SEVERITY_INFO, NT_SEVERITY_WARNING, NT_SEVERITY_ERROR } nt_severity;
 

@@ -14,7 +14,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include "base/memory.h"
-#include "base/pages.h"
 
 void nt_morph_find_rows(const nt_mesh *mesh, size_t m, size_t *at)
 {

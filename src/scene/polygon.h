@@ -5,7 +5,7 @@
 #ifndef NT_SCENE_POLYGON_H
 #define NT_SCENE_POLYGON_H
 
-#include "base/error.h"
+#include "base/text.h"
 
 /*
  * Triangulates one polygon.

@@ -13,9 +13,8 @@
 #ifndef NT_SCENE_SCENE_H
 #define NT_SCENE_SCENE_H
 
-#include "base/buffer.h"
-#include "base/error.h"
 #include "base/memory.h"
+#include "base/text.h"
 #include "scene/finding.h"
 #include "scene/format.h"
 

@@ -8,8 +8,8 @@
  */
 #include <math.h>
 #include <string.h>
-#include "base/dvec.h"
 #include "base/hash.h"
+#include "base/vec.h"
 #include "tangent/frames.h"
 #include "topology/corners.h"
 

@@ -8,7 +8,6 @@
 
 #include <float.h>
 #include <math.h>
-#include "base/dvec.h"
 #include "base/scratch.h"
 #include "base/vec.h"
 #include "nmtan.h"

@@ -10,8 +10,8 @@
 #include <float.h>
 #include <string.h>
 #include "base/angle.h"
-#include "base/dvec.h"
 #include "base/hash.h"
+#include "base/vec.h"
 #include "topology/corners.h"
 
 /* The sum for one position and smoothing group. */

@@ -22,8 +22,8 @@
 
 #include <math.h>
 #include <string.h>
-#include "base/counts.h"
 #include "base/parallel.h"
+#include "base/structs.h"
 #include "topology/corners.h"
 
 /* Faces that share a word of faulty bits, and open vertices, or faces, for which a thread more pays. */

@@ -7,8 +7,8 @@
 #include "tangent/frames.h"
 
 #include <string.h>
-#include "base/counts.h"
 #include "base/parallel.h"
+#include "base/structs.h"
 #include "topology/corners.h"
 
 /* Faces that share a word of faulty bits, and the words per thread below which threads do not pay. */

@@ -10,8 +10,7 @@
 #define NT_TANGENT_WEIGH_H
 
 #include "base/angle.h"
-#include "base/dvec.h"
-#include "base/rsqrt.h"
+#include "base/vec.h"
 
 /* Sine of the angle between u and the normal below which the projected direction would be noise. */
 #define NT_PARALLEL 1e-15

@@ -14,7 +14,7 @@
 #ifndef NT_TOPOLOGY_ADJACENCY_H
 #define NT_TOPOLOGY_ADJACENCY_H
 
-#include "base/borrowed.h"
+#include "base/scratch.h"
 #include "nmtan.h"
 #include "topology/corners.h"
 

@@ -5,7 +5,7 @@
  */
 #include "topology/corners.h"
 
-#include "base/largest.h"
+#include "base/numbers.h"
 #include "topology/inside.h"
 
 /* Counts the corners; every face must have 3 or 4. */

@@ -7,7 +7,6 @@
 #ifndef NT_TOPOLOGY_EDGE_SORT_H
 #define NT_TOPOLOGY_EDGE_SORT_H
 
-#include "base/borrowed.h"
 #include "base/scratch.h"
 #include "topology/corners.h"
 

@@ -5,7 +5,7 @@
 #ifndef NT_TOPOLOGY_INSIDE_H
 #define NT_TOPOLOGY_INSIDE_H
 
-#include "base/borrowed.h"
+#include "base/scratch.h"
 #include "topology/edge_sort.h"
 #include "topology/weld.h"
 

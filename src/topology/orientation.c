@@ -10,8 +10,8 @@
 
 #include <math.h>
 #include <stddef.h>
-#include "base/dvec.h"
 #include "base/exact.h"
+#include "base/vec.h"
 
 enum { DETERMINANT_TERMS = 2 * NT_PRODUCT_TERMS };
 

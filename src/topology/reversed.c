@@ -6,7 +6,7 @@
  */
 #include "topology/corners.h"
 
-#include "base/dvec.h"
+#include "base/vec.h"
 
 /* At most cos 120 degrees between a tangent and where u grows, and a bitangent and where v does: reversed beyond what
  * averaging does. One of them alone says little: it may be far off where u and v grow almost the same way. */

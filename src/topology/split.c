@@ -11,8 +11,8 @@
 
 #include <math.h>
 #include <string.h>
-#include "base/dvec.h"
 #include "base/parallel.h"
+#include "base/vec.h"
 #include "topology/corners.h"
 
 #define NO_COPY UINT32_MAX

@@ -10,8 +10,8 @@
 #define NT_TOPOLOGY_WELD_H
 
 #include <string.h>
-#include "base/borrowed.h"
 #include "base/hash.h"
+#include "base/scratch.h"
 #include "topology/corners.h"
 
 /* ---- a row: loaded from a mesh, its hash, and when two are equal ---- */

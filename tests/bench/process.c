@@ -19,7 +19,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "base/clock.h"
+#include "base/deadline.h"
 
 enum { MOST_WORDS = 31, MOST_ROUNDS = 10000, WARM_UP = 2, SIDES = 2 };
 

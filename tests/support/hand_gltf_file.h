@@ -5,15 +5,15 @@
 #ifndef NT_TEST_HAND_GLTF_FILE_H
 #define NT_TEST_HAND_GLTF_FILE_H
 
+#include "base/text.h"
 #include "fail_alloc.h"
-#include "folder.h"
-#include "test.h"
-#include "base/buffer.h"
 #include "file/input.h"
 #include "file/uri.h"
+#include "folder.h"
 #include "gltf/document.h"
 #include "gltf/load.h"
 #include "pipeline/run.h"
+#include "test.h"
 
 /* ---- writing ---- */
 

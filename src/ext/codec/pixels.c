@@ -5,7 +5,7 @@
 #include "ext/codec/pixels.h"
 
 #include <stdlib.h>
-#include "base/pages.h"
+#include "base/scratch.h"
 
 nt_status nt_pixels_check(uint64_t width, uint64_t height, unsigned channels, unsigned bits, nt_error *error)
 {

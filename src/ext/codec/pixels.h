@@ -14,7 +14,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
-#include "base/error.h"
+#include "base/text.h"
 
 typedef struct nt_pixels {
 	uint32_t width, height; /* at least 1 */

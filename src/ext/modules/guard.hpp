@@ -11,7 +11,7 @@
 #include <exception>
 #include <new>
 #include <utility>
-#include "base/error.h"
+#include "base/text.h"
 #include "ext/reserve.h"
 
 namespace nt {

@@ -11,7 +11,7 @@
 #include "gltf/create/create.h"
 
 #include <string.h>
-#include "base/utf8.h"
+#include "base/text.h"
 #include "gltf/create/model.h"
 
 /* The bytes of a view that holds geometry. */

@@ -9,7 +9,7 @@
 #include "gltf/create/model.h"
 
 #include <string.h>
-#include "base/utf8.h"
+#include "base/text.h"
 #include "ext/number.h"
 
 static const char *const root_members[] = {"accessors", "asset", "bufferViews", "extensionsRequired", "extensionsUsed",

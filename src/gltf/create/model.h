@@ -10,7 +10,7 @@
 #ifndef NT_GLTF_CREATE_MODEL_H
 #define NT_GLTF_CREATE_MODEL_H
 
-#include "base/error.h"
+#include "base/text.h"
 #include "ext/gltf_numbers.h"
 #include "file/output.h"
 #include "gltf/bytes/bytes.h"

@@ -7,7 +7,7 @@
 
 #include <stdlib.h>
 #include <string.h>
-#include "base/available.h"
+#include "base/memory.h"
 #include "base/parallel.h"
 #include "gltf/edit/pool_edit.h"
 

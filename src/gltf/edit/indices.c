@@ -8,9 +8,9 @@
 
 #include <string.h>
 #include "base/hash_index.h"
-#include "base/largest.h"
-#include "gltf/document.h"
+#include "base/numbers.h"
 #include "gltf/bytes/bytes.h"
+#include "gltf/document.h"
 
 /* New indices of one primitive, encoded. */
 typedef struct encoded {

@@ -16,11 +16,10 @@
 
 #include <stdlib.h>
 #include <string.h>
-#include "base/dvec.h"
 #include "base/hash_index.h"
 #include "base/vec.h"
-#include "gltf/load.h"
 #include "gltf/document.h"
+#include "gltf/load.h"
 #include "scene/morphs.h"
 
 /* A pool whose meshes are merged one after the other. */

@@ -13,7 +13,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include "base/buffer.h"
+#include "base/text.h"
 #include "gltf/document.h"
 
 static const char features_name[] = "EXT_mesh_features";

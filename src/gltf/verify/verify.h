@@ -6,7 +6,7 @@
 #ifndef NT_GLTF_VERIFY_VERIFY_H
 #define NT_GLTF_VERIFY_VERIFY_H
 
-#include "base/error.h"
+#include "base/text.h"
 #include "file/output.h"
 #include "gltf/document.h"
 #include "scene/format.h"

@@ -5,8 +5,8 @@
 #include <string.h>
 #include "api/tangents.h"
 #include "base/angle.h"
-#include "base/bits.h"
-#include "base/dvec.h"
+#include "base/numbers.h"
+#include "base/vec.h"
 #include "report/maker/quads.h"
 #include "topology/corners.h"
 

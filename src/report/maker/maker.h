@@ -5,7 +5,7 @@
 #ifndef NT_REPORT_MAKER_MAKER_H
 #define NT_REPORT_MAKER_MAKER_H
 
-#include "base/buffer.h"
+#include "base/text.h"
 #include "scene/scene.h"
 
 /* From this share of the corners on, tangents are those of a method. */

@@ -10,8 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 #include "base/angle.h"
-#include "base/dvec.h"
 #include "base/hash.h"
+#include "base/vec.h"
 #include "report/pairs.h"
 
 static const double DEGREES = 57.29577951308232;

@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include "base/utf8.h"
+#include "base/text.h"
 #include "report/render/inside.h"
 
 enum { MADE_BYTES = 20 };

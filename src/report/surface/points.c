@@ -11,8 +11,8 @@
 
 #include <stdlib.h>
 #include <string.h>
-#include "base/dvec.h"
 #include "base/hash.h"
+#include "base/vec.h"
 
 static bool same_position(const float *p, const float *q)
 {

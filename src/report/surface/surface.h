@@ -9,7 +9,7 @@
 #define NT_REPORT_SURFACE_H
 
 #include <math.h>
-#include "base/bits.h"
+#include "base/numbers.h"
 #include "base/scratch.h"
 #include "report/surface/box.h"
 #include "scene/scene.h"

@@ -35,8 +35,8 @@
 
 #include <assert.h>
 #include <string.h>
-#include "base/clock.h"
 #include "base/cpu.h"
+#include "base/deadline.h"
 #include "base/parallel.h"
 #include "tangent/fast/parts.h"
 #include "topology/corners.h"

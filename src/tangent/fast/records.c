@@ -13,7 +13,6 @@
 #include "tangent/fast/parts.h"
 
 #include <string.h>
-#include "base/lock.h"
 #include "base/parallel.h"
 
 /* Vertices for which a thread more adds what was put aside. */

@@ -25,8 +25,8 @@
 #include "tangent/sums/sums.h"
 
 #include <string.h>
-#include "base/clock.h"
 #include "base/cpu.h"
+#include "base/deadline.h"
 #include "base/parallel.h"
 #include "tangent/fast/bins.h"
 #include "tangent/sums/parts.h"

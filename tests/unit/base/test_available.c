@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "base/available.h"
+#include "base/memory.h"
 #include "folder.h"
 #include "test.h"
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "base/buffer.h"
+#include "base/text.h"
 #include "fail_alloc.h"
 #include "test.h"
 

@@ -2,7 +2,7 @@
 /*
  * The largest of many numbers, wherever it stands.
  */
-#include "base/largest.h"
+#include "base/numbers.h"
 #include "test.h"
 
 TEST(none_of_no_numbers)

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 #include "base/memory.h"
-#include "base/pages.h"
 #include "test.h"
 
 #include <inttypes.h>

@@ -12,7 +12,7 @@
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
-#include "base/pool.h"
+#include "base/parallel.h"
 #include "nmtan.h"
 
 static atomic_uint threads_made;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "test.h"
 #include <math.h>
-#include "base/rsqrt.h"
+#include "base/angle.h"
 
 /* The C library's square root, which is rounded correctly, is the judge. */
 TEST(reciprocal_square_roots_are_good_to_three_ulps)

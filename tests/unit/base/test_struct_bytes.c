@@ -2,7 +2,7 @@
 /*
  * One struct in three versions: whatever the caller's and whatever the library's, both see what both have.
  */
-#include "base/struct_bytes.h"
+#include "base/structs.h"
 #include "test.h"
 
 typedef struct first {

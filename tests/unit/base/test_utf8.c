@@ -3,7 +3,7 @@
  * Every pair of first bytes and the borders of RFC 3629's table; mbrtoc32 of the C library, in a UTF-8 locale,
  * judges every sequence of up to three bytes.
  */
-#include "base/utf8.h"
+#include "base/text.h"
 #include "test.h"
 
 #include <locale.h>

@@ -10,7 +10,7 @@
 #include <sys/syscall.h>
 #include <time.h>
 #include <unistd.h>
-#include "base/clock.h"
+#include "base/deadline.h"
 #include "cli/progress.h"
 
 /* In place of the C library's; for the tests of this file, the time of day stands. */

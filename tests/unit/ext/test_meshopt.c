@@ -6,7 +6,7 @@
  * writes such files.
  */
 #include "test.h"
-#include "base/error.h"
+#include "base/text.h"
 #include "ext/meshopt.h"
 
 enum { MOST = 4096 };

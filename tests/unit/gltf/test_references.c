@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "test.h"
 #include <stdio.h>
-#include "base/buffer.h"
+#include "base/text.h"
 #include "gltf/document.h"
 
 /* `,"meshes":[{"primitives":[9]}]` for "/meshes/0/primitives/0": nothing stands beside what the path names. */

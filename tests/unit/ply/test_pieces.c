@@ -4,7 +4,7 @@
  * refused and where. The values are those that were written.
  */
 #include "ply_file.h"
-#include "base/buffer.h"
+#include "base/text.h"
 
 enum { VERTICES = 260000, FACES = 150000, MIDDLE = 130001 };
 

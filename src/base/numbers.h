@@ -1,15 +1,29 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Arrays of bits, and how many are set before a place: a set of numbers in an eighth of a byte each, and the numbers
- * of its members in ascending order.
+ * Many numbers: the largest of them, and sets of them as bits.
  */
-#ifndef NT_BASE_BITS_H
-#define NT_BASE_BITS_H
+#ifndef NT_BASE_NUMBERS_H
+#define NT_BASE_NUMBERS_H
 
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 #include "base/compiler.h"
+
+/* ---- the largest, by which indices are checked ---- */
+
+/* A loop that stops at the first bad one takes longer, because it cannot look at several at once. */
+
+/* The largest of values[0..count); 0 where there are none. */
+uint32_t nt_largest(const uint32_t *values, size_t count);
+
+/* Whether each of values[0..count) is below a limit. */
+bool nt_all_below(const uint32_t *values, size_t count, uint32_t limit);
+
+/* ---- bits ---- */
+
+/* A set of numbers in an eighth of a byte each, and how many are set before a place: the numbers of its members in
+ * ascending order. */
 
 /* Words for the bits [0, count). */
 static inline size_t nt_bit_words(size_t count)
