@@ -92,7 +92,8 @@ static inline double nt_angle(double s, double c)
 
 /*
  * By multiplication alone, quick in vectors: halving and negating the exponent (the bits as an integer) is right to
- * 3.5 %, and each step of Newton's method squares the error: 1.8e-3, 4.7e-6, 3.3e-11, then rounding. A square root and a division take longer.
+ * 3.5 %, and each step of Newton's method squares the error: 1.8e-3, 4.7e-6, 3.3e-11, then rounding. A square root and
+ * a division take longer.
  *
  * For x in [2^-1000, 2^1000]. For 0 and denormals the result is finite and means nothing.
  */

@@ -42,9 +42,9 @@ void nt_drop_pages(void *memory, size_t bytes);
 
 /* ---- scratch ---- */
 
-/* A stack of blocks from the caller's allocator, for one call. A workspace is a scratch that keeps its blocks, so that a
- * second call of the same size touches no fresh page. Not for several threads: allocate before a parallel region, or one
- * scratch per thread. */
+/* A stack of blocks from the caller's allocator, for one call. A workspace is a scratch that keeps its blocks, so that
+ * a second call of the same size touches no fresh page. Not for several threads: allocate before a parallel region, or
+ * one scratch per thread. */
 
 typedef struct nt_scratch {
 	nmtan_allocator allocator;

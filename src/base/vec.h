@@ -104,8 +104,8 @@ static inline bool nt_is_unit_normal(const float n[3])
 
 /* ---- doubles ---- */
 
-/* For the methods that are not bound to MikkTSpace's float arithmetic. Values come from floats, so that products of four
- * of them neither overflow nor vanish. */
+/* For the methods that are not bound to MikkTSpace's float arithmetic. Values come from floats, so that products of
+ * four of them neither overflow nor vanish. */
 
 typedef struct nt_dvec3 {
 	double x, y, z;

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What a mesh is to this room: its triangles, by corners; when corners are one vertex; which orientation a triangle
- * has in UV space. Corners are numbered through all faces.
+ * Meshes by corners, which are numbered through all faces: triangles, their exact orientation in UV space, and which
+ * corners are one vertex to MikkTSpace: equal position, normal and texture coordinates, compared as floats (0 equals
+ * -0, NaN equals nothing), no epsilon. Spec page, step 2.
  */
 #ifndef NT_TOPOLOGY_CORNERS_H
 #define NT_TOPOLOGY_CORNERS_H

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What the files of the weld, and of the order of edges, have among themselves.
+ * The inside of this room: shared by the files of the weld, and by those of the order of edges.
  */
 #ifndef NT_TOPOLOGY_INSIDE_H
 #define NT_TOPOLOGY_INSIDE_H

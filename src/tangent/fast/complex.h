@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Complex vertices: complex.c is the recipe, complex_groups.c finds the groups of their corners, complex_solve.c averages
- * and writes them.
+ * Complex vertices: complex.c is the recipe, complex_groups.c finds the groups of their corners, complex_solve.c
+ * averages and writes them.
  */
 #ifndef NT_TANGENT_FAST_COMPLEX_H
 #define NT_TANGENT_FAST_COMPLEX_H

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * 16 triangles at a time (spec page, steps 4 and 8), as plain loops of which the compiler makes vectors: their frames, the
- * weighted u direction of each corner, and what holds for all of them. The arithmetic is that of the scalar definition,
- * operation by operation, wherever a value reaches the output. Included by kernel.h.
+ * 16 triangles at a time (spec page, steps 4 and 8), as plain loops of which the compiler makes vectors: their frames,
+ * the weighted u direction of each corner, and what holds for all of them. The arithmetic is that of the scalar
+ * definition, operation by operation, wherever a value reaches the output. Included by kernel.h.
  */
 #ifndef NT_TANGENT_FAST_LANES_H
 #define NT_TANGENT_FAST_LANES_H
