@@ -83,7 +83,10 @@ class File:
         return self.buffer(v['buffer'])[o:o + v['byteLength']]
 
     def element(self, a):
-        return SIZES[a['componentType']] * WIDTHS[a['type']]
+        """Columns of matrices begin at multiples of four bytes."""
+        columns = {'MAT2': 2, 'MAT3': 3}.get(a['type'], 1)
+        column = SIZES[a['componentType']] * WIDTHS[a['type']] // columns
+        return columns * ((column + 3) // 4 * 4 if columns > 1 else column)
 
     def rows(self, i):
         """The bytes of each element."""

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""gltf_table.py make             a table of small glTF files in the folder in: who shares what, how bytes lie, which tangents are there
+"""gltf_table.py make [SEED]      small glTF files in the folder in, made by chance: who shares what, how bytes lie, which tangents are there
 gltf_table.py sets                 the sets of options, a line for each: name, options
 gltf_table.py run SET NMTAN N      converts the files with the options of SET, of some sets a third, and of those one in N, and says
                                    what is wrong
@@ -14,6 +14,7 @@ import base64
 import json
 import math
 import os
+import random
 import struct
 import subprocess
 import sys
@@ -36,10 +37,16 @@ class Stream:
         self.how, self.number = how, None
 
     def size(self):
-        return SIZES[self.kind] * len(self.rows[0])
+        return len(self.bytes(self.rows[0]))
+
+    def type(self):
+        return self.how.get('type', TYPES.get(len(self.rows[0])))
 
     def bytes(self, row):
-        return struct.pack('<%d%s' % (len(row), CODES[self.kind]), *row)
+        """Columns of matrices begin at multiples of four bytes."""
+        high = {'MAT2': 2, 'MAT3': 3}.get(self.type(), len(row))
+        columns = [struct.pack('<%d%s' % (high, CODES[self.kind]), *row[at:at + high]) for at in range(0, len(row), high)]
+        return b''.join(x if len(columns) == 1 else x.ljust((len(x) + 3) // 4 * 4, b'\xDD') for x in columns)
 
 
 def again(stream):
@@ -411,12 +418,13 @@ class Document:
                          {'normalTexture': {'index': 0, 'extensions': {'KHR_texture_transform': {'scale': [-1, 1]}}}}],
                      'extensionsUsed': ['KHR_texture_transform'], 'images': [{'uri': PNG}], 'accessors': [], 'bufferViews': [], 'buffers': []}
         self.bins = [bytearray(), bytearray(), bytearray()]
-        self.fallback, self.lists = {}, {}
+        self.fallback, self.lists, self.home = {}, {}, 0
 
     def primitives(self):
         return [p for mesh in self.json['meshes'] for p in mesh['primitives']]
 
-    def view(self, data, buffer=0, align=4, **more):
+    def view(self, data, buffer=None, align=4, **more):
+        buffer = self.home if buffer is None else buffer
         target = self.bins[buffer]
         target.extend(bytes(-len(target) % align))
         self.json['bufferViews'].append({'buffer': buffer, 'byteOffset': len(target), 'byteLength': len(data), **more})
@@ -424,7 +432,7 @@ class Document:
         return len(self.json['bufferViews']) - 1
 
     def accessor(self, s, view=None, offset=0):
-        a = {'componentType': s.kind, 'count': len(s.rows), 'type': TYPES[len(s.rows[0])]}
+        a = {'componentType': s.kind, 'count': len(s.rows), 'type': s.type()}
         if view is not None:
             a['bufferView'] = view
             if offset:
@@ -441,7 +449,7 @@ class Document:
             a = self.json['accessors'][s.number]
             a['min'], a['max'] = ([f(column) for column in zip(*rows)] for f in (min, max))
 
-    def alone(self, s, buffer=0, width=None, **more):
+    def alone(self, s, buffer=None, width=None, **more):
         """A view of its own; rows are as wide as attributes need."""
         width = width or (s.size() if s.how.get('indices') else (s.size() + 3) // 4 * 4)
         if width != s.size():
@@ -486,7 +494,7 @@ class Document:
         for s in streams:
             if s.over:
                 root = s.over
-                a = dict(self.json['accessors'][root.number], count=len(s.rows), type=TYPES[len(s.rows[0])])
+                a = dict(self.json['accessors'][root.number], count=len(s.rows), type=s.type())
                 if s.first:
                     a['byteOffset'] = a.get('byteOffset', 0) + s.first * s.size()
                 self.json['accessors'].append(a)
@@ -570,7 +578,7 @@ def interleaved(d, streams, gap=4, views=False, joined=False):
             del d.json['bufferViews'][view]
         for s, offset in zip(group, offsets):
             if views:  # each ends with its last element
-                d.json['bufferViews'].append({'buffer': 0, 'byteOffset': begin + offset, 'byteStride': stride,
+                d.json['bufferViews'].append({'buffer': d.home, 'byteOffset': begin + offset, 'byteStride': stride,
                                               'byteLength': (len(s.rows) - 1) * stride + s.size()})
                 d.accessor(s, len(d.json['bufferViews']) - 1)
             else:
@@ -752,45 +760,69 @@ def build(name, sharing, tangents, lay_out, quantized=False):
     return d
 
 
-def table():
-    """Each way to share with five of the layouts and of the kinds of tangents, which are others from one to the next."""
-    cells = []
-    for i, sharing in enumerate(SHARING):
-        for k in range(5):
-            cells.append((sharing, TANGENTS[(2 * k + i) % len(TANGENTS)], LAYOUTS[(5 * i + k) % len(LAYOUTS)], False))
-        cells.append((sharing, TANGENTS[i % len(TANGENTS)], LAYOUTS[(3 * i) % len(LAYOUTS)], True))
-    # twins whose bytes others have, TANGENT of all accessors over the same bytes, and of two sets
-    for sharing, tangents, lay_out in (twins, part_elsewhere, tight), (twins, floats, separate), (instances, shorts, interleaved), (
-            same_positions, floats, separate), (instances, none, separate):
-        cells.append((sharing, tangents, lay_out, False))
-    return cells
+# Attributes that tangents do not need, beside those of strip(): type, what each vertex has.
+MORE = {
+    'TEXCOORD_1': (FLOAT, None, lambda i: (i / 8, 1.0)), 'COLOR_1': (USHORT, None, lambda i: (i, 7, 65535)),
+    'JOINTS_0': (UBYTE, None, lambda i: (i % 5, 0, 1, 2)), 'WEIGHTS_0': (FLOAT, None, lambda i: (0.25, 0.5, 0.25, 0.0)),
+    '_BYTES': (BYTE, None, lambda i: (-i % 100, i % 100)), '_NUMBER': (UINT, None, lambda i: (70000 + i,)),
+    '_ROUND': (UBYTE, 'MAT2', lambda i: (i % 250, 1, 2, 3)), '_SHORT': (SHORT, 'MAT3', lambda i: (-i, 1, 2, 3, 4, 5, 6, 7, 8)),
+    '_WIDE': (FLOAT, 'MAT4', lambda i: (i, *range(15)))}
 
 
-def make():
+class Chance:
+    """How one file is: all that depends on chance is decided here, so that it can be built twice."""
+
+    def __init__(self, seed, layouts):
+        chance = random.Random(seed)
+        few = [sharing for sharing in SHARING if sharing not in (many, many_sparse)]
+        self.sharing = [chance.choice(SHARING)] + chance.sample(few, chance.choice((0, 0, 1, 2)))
+        self.tangents, self.layouts = chance.choice(TANGENTS), chance.sample(layouts, chance.choice((1, 1, 2)))
+        self.quantized, self.seed = chance.random() < 0.25, seed
+        self.name = '-'.join(x.__name__ for x in (*self.sharing, self.tangents, *self.layouts)) + '-quantized' * self.quantized
+
+    def meshes(self, quantized):
+        chance, meshes = random.Random(self.seed), sum([sharing(quantized) for sharing in self.sharing], [])
+        for p in all_primitives(meshes):
+            count = len(p['attributes']['POSITION'].rows)
+            for name in chance.sample(list(MORE), chance.choice((0, 0, 1, 2))):
+                kind, type_, row = MORE[name]
+                p['attributes'].setdefault(name, Stream(kind, [row(i) for i in range(count)], name[0] == 'C', **(
+                    {'type': type_} if type_ else {})))
+        return meshes
+
+    def lay_out(self, d, streams):
+        """Some streams in one way, the others in another; between them lies what nobody knows."""
+        chance = random.Random(self.seed)
+        groups = [[] for _ in self.layouts]
+        for s in streams:
+            chance.choice(groups).append(s)
+        for layout, group in zip(self.layouts, groups):
+            if chance.random() < 0.25:
+                d.view(b'?' * chance.randrange(1, 9), align=chance.choice((1, 4)))
+            d.home = chance.choice((0, 0, 0, 1))
+            layout(d, group)
+
+    def build(self):
+        return build(self.name, self.meshes, self.tangents, self.lay_out, self.quantized)
+
+
+def make(seed=1):
     for folder in ('in', 'plain', 'packed'):
         os.makedirs(folder, exist_ok=True)
     with open('in/n (1).png', 'wb') as file:
         file.write(PIXEL)
-    for number, (sharing, tangents, lay_out, quantized) in enumerate(table()):
-        name = '-'.join([sharing.__name__, tangents.__name__, lay_out.__name__] + ['quantized'] * quantized)
-        build(name, sharing, tangents, lay_out, quantized).write('in', number % 5 == 0, number % 3, number % 7 == 0)
+    for number in range(200):
+        one = Chance('%d in %d' % (seed, number), LAYOUTS)
+        one.name = '%03d-%s' % (number, one.name)
+        one.build().write('in', number % 5 == 0, number % 3, number % 7 == 0)
     # the same with compressed views
-    for number, sharing in enumerate(SHARING):
-        for k, lay_out in enumerate((separate, sequential, tight)):
-            tangents, quantized = TANGENTS[(number + 3 * k) % len(TANGENTS)], (number + k) % 2 == 1
-            name = '-'.join([sharing.__name__, tangents.__name__, lay_out.__name__] + ['quantized'] * quantized)
-            build(name, sharing, tangents, lay_out, quantized).write('plain')
-            d = build(name, sharing, tangents, lay_out, quantized)
-            pack_views(d, ('EXT_meshopt_compression', 'KHR_meshopt_compression')[number % 2], k == 0, k == 2)
-            d.write('packed', binary=number % 3 == 0)
-    for sharing in (points, animated, placed, loose, alone, same_positions):
-        name = '%s-none-sparse_packed' % sharing.__name__
-        for folder in 'plain', 'packed':
-            d = build(name, sharing, none, sparse_positions)
-            if folder == 'packed':
-                pack_views(d, 'EXT_meshopt_compression', True, False)
-            d.write(folder)
-
+    for number in range(100):
+        one = Chance('%d packed %d' % (seed, number), [separate, sequential, tight, sparse_positions])
+        one.name = '%03d-%s' % (number, one.name)
+        one.build().write('plain')
+        d = one.build()
+        pack_views(d, ('EXT_meshopt_compression', 'KHR_meshopt_compression')[number % 2], number % 3 == 0, number % 3 == 2)
+        d.write('packed', binary=number % 5 < 2)
 
 
 # ---- what must be ----
@@ -940,7 +972,7 @@ SETS = {
     'byte': ('in', '--existing=replace --precision=byte', 3),
     'float': ('in', '--only=all --existing=replace --precision=float --morph=keep', 3),
     # points lie between tangents, and who they belong to is not asked
-    'again': ('replace', '--only=all --existing=replace', 1, [sharing.__name__ for sharing in SHARING if sharing != points]),
+    'again': ('replace', '--only=all --existing=replace', 1, ['!points']),
     'weld': ('in', '--only=all --existing=replace --weld', 3),
     'weld-loose': ('in', '--only=all --existing=replace --weld', 1, ['loose_soup', 'loose_morphs']),
     'weld-left': ('in', '--weld --images=copy', 1, ['soup']),
@@ -966,8 +998,9 @@ SETS = {
 def components(f, accessor):
     """Rows of numbers, normalized ones as they are meant."""
     a = f.g['accessors'][accessor]
-    code = '<%d%s' % (lossless.WIDTHS[a['type']], CODES[a['componentType']])
-    rows = [struct.unpack(code, row) for row in f.rows(accessor)]
+    high = {'MAT2': 2, 'MAT3': 3}.get(a['type'], lossless.WIDTHS[a['type']])
+    code, step = '<%d%s' % (high, CODES[a['componentType']]), f.element(a) * high // lossless.WIDTHS[a['type']]
+    rows = [sum([struct.unpack_from(code, row, at) for at in range(0, len(row), step)], ()) for row in f.rows(accessor)]
     if a.get('normalized'):
         rows = [tuple(max(x / UNIT[a['componentType']], -1) for x in row) for row in rows]
     return rows
@@ -1224,7 +1257,8 @@ def check_image(b, options, fault):
         fault('the image is at %s' % image)
 
 
-def check(options, before, after, fault, compressed=False):
+def check(options, before, after, fault, compressed=''):
+    """compressed: the input as meshoptimizer packed it."""
     a, b = File(before), File(after)
     lossless.complaints = []
     lossless.complain.__globals__['complaints'] = lossless.complaints
@@ -1244,9 +1278,13 @@ def check(options, before, after, fault, compressed=False):
     lossless.same_views(a, b)
     places = [place(a, i) for i in range(len(a.g['accessors']))]
     shared = ['/accessors/%d/sparse is gone' % i for i, x in enumerate(places) if places.count(x) > 1]
+    # views that were emptied have other content
+    emptied = ['/bufferViews/%d/' % v for v in range(len(a.g['bufferViews'])) if all(
+        x.get('bufferView') != v or y.get('bufferView') != v or x['count'] != y['count']
+        for x, y in zip(a.g['accessors'], b.g['accessors']))]
     for text in lossless.complaints:
-        # elements that others have, too, are baked; views that were emptied have other content
-        if text not in shared and 'keys in another order' not in text:
+        # elements that others have, too, are baked
+        if text not in shared and 'keys in another order' not in text and not text.startswith(tuple(emptied)):
             fault(text)
     for m, mesh in enumerate(a.g['meshes']):
         for k in range(len(mesh['primitives'])):
@@ -1254,8 +1292,9 @@ def check(options, before, after, fault, compressed=False):
     check_counts(a, b, options, fault)
     check_image(b, options, fault)
     packs = {n for v in b.g['bufferViews'] for n in v.get('extensions', {})}
+    packed = {n for v in File(compressed).g['bufferViews'] for n in v.get('extensions', {})} if compressed else ()
     for name in b.g.get('extensionsRequired', []):
-        if 'meshopt' in name and name not in packs:
+        if 'meshopt' in name and name not in packs and packed:
             fault('%s is required and nothing has it' % name)
     if compressed:
         return
@@ -1302,12 +1341,16 @@ def check_draco(options, before, after, fault):
                 fault('mesh %d primitive %d: triangle %s, expected %s' % (m, k, both[1][at], both[0][at]))
 
 
+def sharing_of(stem):
+    return [x for x in stem.split('-') if x in [sharing.__name__ for sharing in SHARING]]
+
+
 def share_blocks():
     """Blocks of the set "draco" that two primitives have, or whose accessors a plain one has, too; and the same without blocks."""
     os.makedirs('block', exist_ok=True)
     os.makedirs('block-plain', exist_ok=True)
     for stem, path in names_of('draco').items():
-        if not stem.startswith(('alone-', 'many-', 'other_set-', 'morphs-')) or 'quantized' in stem:
+        if sharing_of(stem)[0] not in ('alone', 'many', 'other_set', 'morphs') or 'quantized' in stem:
             continue
         for source, folder in (path, 'block'), (names_of('draco-plain')[stem], 'block-plain'):
             f = File(source)
@@ -1335,7 +1378,8 @@ def convert(name, program, stride):
         share_blocks()
     files = names_of(source)
     stems = [stem for i, stem in enumerate(sorted(files)) if (i + number) % (share * stride) == 0]
-    files = [files[stem] for stem in stems if any(word in stem for word in sum(words, []) or [''])]
+    words = sum(words, []) or ['']
+    files = [files[stem] for stem in stems if any(word in stem if word[:1] != '!' else word[1:] not in stem for word in words)]
 
     def run(options, folder, files):
         done = subprocess.run([program, *options.split(), '-q', '-d', folder, *files], stdin=subprocess.DEVNULL,
@@ -1349,7 +1393,6 @@ def convert(name, program, stride):
             if stem in outputs and i % 2 == 0:
                 file.write('%s\t%s\n' % (os.path.abspath(outputs[stem]), os.path.abspath(x)))
     # blocks are judged when they are plain again
-    compressed = source == 'packed'
     draco = 'draco' in options + source or source == 'block'
     packed = outputs
     if draco and outputs:
@@ -1369,11 +1412,11 @@ def convert(name, program, stride):
                 twin = 'block-plain' if source == 'block' else 'in'
                 check_draco(options, names_of(twin)[stem], outputs[stem], found.append)
                 plain = not any(word in stem for word in ('sparse', 'bare', 'shorts', 'elsewhere', 'quantized'))
-                if stem.startswith(('alone-', 'two-', 'soup-', 'morphs-', 'many-')) and plain and source != 'block' and (
+                if all(x in ('alone', 'two', 'soup', 'morphs', 'many') for x in sharing_of(stem)) and plain and source != 'block' and (
                         'KHR_draco_mesh_compression' in File(packed[stem]).g['extensionsUsed']) == ('=off' in options):
                     found.append('it is plain' if '=off' not in options else 'it is compressed')
             else:
-                check(options, x if source == 'in' else 'plain/%s.gltf' % stem, outputs[stem], found.append, compressed)
+                check(options, x if source == 'in' else 'plain/%s.gltf' % stem, outputs[stem], found.append, x if source == 'packed' else '')
         except (IndexError, KeyError, ValueError, struct.error) as error:
             found.append('cannot be read: %r' % error)
         said += ['%s: %s' % (stem, text[:300]) for text in found[:2]]
@@ -1382,7 +1425,7 @@ def convert(name, program, stride):
 
 if __name__ == '__main__':
     if sys.argv[1] == 'make':
-        make()
+        make(*map(int, sys.argv[2:]))
     elif sys.argv[1] == 'sets':
         for name, (_, options, *_) in SETS.items():
             print(name, options)

@@ -49,7 +49,7 @@ typedef struct nt_edited_accessor {
 	                         on; 0: none */
 	uint32_t apart;       /* `same`: the one before it in its segment that no edit touches; NT_NONE: none */
 	bool seen;            /* the pool has it */
-	bool listed, pinned;  /* `same`: pinned: an unsolved user has it */
+	bool listed, pinned, solved; /* `same`: pinned: an unsolved user has it; solved: a solved one */
 } nt_edited_accessor;
 
 /* glTF's own data in buffers needs no more. */

@@ -21,7 +21,7 @@ typedef struct target {
 	nt_set_attribute *override; /* NULL: its values stay */
 	nt_segment *segment;  /* NULL: it has no view */
 	uint64_t begin; /* of its elements, in the buffer */
-	bool stays;     /* solved primitives have a copy of it */
+	bool stays;     /* solved primitives have a copy of it, or do without */
 	bool moved;     /* to a new view */
 } target;
 
@@ -60,6 +60,7 @@ static nt_status collect(appending *job, uint32_t index, bool solved)
 	const bool is_new = !all[index].seen;
 	const nt_gltf_accessor *a = NULL;
 	all[same].pinned |= !solved;
+	all[same].solved |= solved;
 	all[index].seen = true;
 	nt_status status = is_new ? nt_gltf_get_accessor(job->document, index, "/accessors", &a, job->error) : NT_OK;
 	if (is_new && !status)
@@ -281,7 +282,10 @@ static nt_status clone_pinned(appending *job)
 	nt_status status = NT_OK;
 	for (size_t i = 0; !status && i < job->target_count; i++) {
 		const uint32_t same = job->targets[i].accessor->index;
-		if (job->edits->accessors[same].pinned || job->document->users[same].foreign)
+		const nt_edited_accessor *edited = &job->edits->accessors[same];
+		if (!edited->solved)
+			job->targets[i].stays = true;
+		else if (edited->pinned || job->document->users[same].foreign)
 			status = clone(job, &job->targets[i]);
 	}
 	return status;
