@@ -19,10 +19,8 @@ nmtan_status nt_repair_and_split(const nt_solve *solve, nmtan_counts *counts, nt
 
 /* ---- the output of a split: split.c ---- */
 
-/*
- * Between the caller's arrays and those of the splitter, which knows plain meshes and rows of
- * tangents that are tightly packed.
- */
+/* Between the caller's arrays and those of the splitter, which knows plain meshes and rows of tangents that are tightly
+ * packed. */
 
 /* Rows of tangents. */
 enum { NT_TANGENT_BYTES = 4 * sizeof(float) };

@@ -12,7 +12,7 @@
 #include <string.h>
 #include "base/hash_index.h"
 #include "base/memory.h"
-#include "file/lookup.h"
+#include "file/input.h"
 #include "file/output.h"
 #include "file/path.h"
 

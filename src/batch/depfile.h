@@ -6,7 +6,7 @@
 #define NT_BATCH_DEPFILE_H
 
 #include "base/text.h"
-#include "file/trace.h"
+#include "file/input.h"
 
 /* The text of a depfile; zeroed: no rules yet. */
 typedef struct nt_depfile {

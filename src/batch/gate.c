@@ -8,7 +8,6 @@
 #include <sys/stat.h>
 
 #include "file/input.h"
-#include "file/lookup.h"
 #include "format/format.h"
 
 void nt_gate_init(nt_gate *gate, uint64_t limit)

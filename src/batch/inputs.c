@@ -14,7 +14,6 @@
 #include "base/hash_index.h"
 #include "base/text.h"
 #include "file/input.h"
-#include "file/lookup.h"
 #include "file/path.h"
 #include "format/format.h"
 #include "pipeline/timer.h"

@@ -13,9 +13,8 @@
 #include <sys/stat.h>
 
 #include "base/text.h"
-#include "file/lookup.h"
+#include "file/input.h"
 #include "file/path.h"
-#include "file/uri.h"
 #include "format/format.h"
 #include "report/codes.h"
 

@@ -18,7 +18,6 @@
 #include <unistd.h>
 #include "base/memory.h"
 #include "file/input.h"
-#include "file/lookup.h"
 #include "file/output.h"
 #include "file/path.h"
 

@@ -14,9 +14,7 @@
 
 #include "base/memory.h"
 #include "file/input.h"
-#include "file/lookup.h"
 #include "file/path.h"
-#include "file/uri.h"
 #include "json/json.h"
 #include "nmtan.h"
 #include "report/render/render.h"

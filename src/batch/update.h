@@ -33,7 +33,7 @@
 #define NT_BATCH_UPDATE_H
 
 #include "batch/record.h"
-#include "file/trace.h"
+#include "file/input.h"
 #include "pipeline/settings.h"
 
 /* The comparison of files: by size, times and inode, or by size and digest. */

@@ -19,10 +19,9 @@
 #include "cli/say.h"
 #include "cli/session.h"
 #include "ext/module.h"
-#include "file/lookup.h"
+#include "file/input.h"
 #include "file/output.h"
 #include "file/path.h"
-#include "file/temporary.h"
 #include "report/codes.h"
 
 static void say_usage(const nt_error *error, nt_style style)

@@ -15,12 +15,10 @@
 #include "base/structs.h"
 #include "cli/messages.h"
 #include "file/input.h"
-#include "file/lookup.h"
 #include "file/path.h"
-#include "file/uri.h"
 #include "report/codes.h"
 #include "report/render/render.h"
-#include "scene/origin.h"
+#include "scene/values.h"
 
 /* A job that failed for want of memory has a line all the same. */
 enum { LINE_BYTES = 16 * 1024 };

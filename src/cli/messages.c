@@ -10,7 +10,7 @@
 #include <sys/stat.h>
 
 #include "base/structs.h"
-#include "file/lookup.h"
+#include "file/input.h"
 #include "report/codes.h"
 
 /* So many places of one code are shown without -v; the rest is counted. */

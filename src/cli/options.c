@@ -8,9 +8,9 @@
  */
 #include "cli/options.h"
 #include "cli/option_table.h"
-#include "file/lookup.h"
+#include "file/input.h"
 #include "report/codes.h"
-#include "scene/origin.h"
+#include "scene/values.h"
 
 #include <fnmatch.h>
 #include <inttypes.h>

@@ -8,7 +8,7 @@
 #include <inttypes.h>
 #include <string.h>
 #include <sys/stat.h>
-#include "file/lookup.h"
+#include "file/input.h"
 #include "file/output.h"
 #include "file/path.h"
 

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * See base64.h. Groups of three bytes become four characters, on their way to a sink in a buffer on the
+ * Base64. Groups of three bytes become four characters, on their way to a sink in a buffer on the
  * stack.
  */
-#include "file/base64.h"
+#include "file/output.h"
 
 #include <string.h>
 

@@ -3,7 +3,7 @@
  * Putting a set in place, so that one rename switches from the old set to the new one.
  *
  * After each step the process may be killed, and with options.sync the power may go; the folders are synchronised
- * between the steps. "M" is the main file, "a.bin" a sidecar, "tmp" a temporary name (temporary.h).
+ * between the steps. "M" is the main file, "a.bin" a sidecar, "tmp" a temporary name (temporary.c).
  *
  *   step                                   who refers to what           reading M gives
  *   0  all bytes under tmp names           M -> the old a.bin           old set, or nothing
@@ -44,7 +44,7 @@
 #include <string.h>
 #include <sys/file.h>
 #include <unistd.h>
-#include "file/trace.h"
+#include "file/input.h"
 
 static nt_status taken_meanwhile(nt_output *output, const char *path, nt_error *error)
 {

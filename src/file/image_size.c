@@ -4,7 +4,7 @@
  * header, behind other segments (ITU-T T.81, B.2.2), TIFF among the tags of its first directory (TIFF 6.0, section 2),
  * HDR in the line behind its header, the others at fixed places.
  */
-#include "file/image_type.h"
+#include "file/input.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Image types: see image_type.h. The signatures are those of the formats' specifications.
+ * Image types: see input.h. The signatures are those of the formats' specifications.
  */
-#include "file/image_type.h"
+#include "file/input.h"
 
 #include <string.h>
 #include <strings.h>

@@ -3,7 +3,7 @@
  * Inputs: a regular file is mapped, anything else (pipe, terminal, device, a file without a size as
  * /proc has them) is read to its end. The descriptor of a mapped file stays open: watch.c asks it for changes.
  *
- * A file that another process changes while it is mapped is no input: see watch.h.
+ * A file that another process changes while it is mapped is no input: see watch.c.
  */
 #include "file/input.h"
 
@@ -17,9 +17,6 @@
 #include <unistd.h>
 #include "base/deadline.h"
 #include "base/memory.h"
-#include "file/lookup.h"
-#include "file/trace.h"
-#include "file/watch.h"
 
 enum { FIRST_READ_BYTES = 64 * 1024 };
 

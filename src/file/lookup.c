@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Looking for files: see lookup.h.
+ * Looking for files: see input.h.
  */
-#include "file/lookup.h"
+#include "file/input.h"
 
 #include <dirent.h>
 #include <errno.h>
@@ -11,7 +11,6 @@
 #include <string.h>
 #include <strings.h>
 #include "base/text.h"
-#include "file/trace.h"
 
 nt_status nt_lookup_failed(const char *path, int number, nt_error *error)
 {

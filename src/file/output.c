@@ -19,8 +19,7 @@
 #include <unistd.h>
 #include "base/memory.h"
 #include "ext/reserve.h"
-#include "file/trace.h"
-#include "file/watch.h"
+#include "file/input.h"
 
 nt_status nt_output_create(nt_output **output, const nt_output_options *options, nt_error *error)
 {

@@ -9,10 +9,9 @@
 #include <sys/stat.h>
 #include "base/hash_index.h"
 #include "base/memory.h"
-#include "file/lookup.h"
+#include "file/input.h"
 #include "file/output.h"
 #include "file/path.h"
-#include "file/temporary.h"
 
 /* One state of one file; it has changed when any of it differs. */
 typedef struct nt_file_state {

@@ -9,8 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-#include "file/lookup.h"
-#include "file/trace.h"
+#include "file/input.h"
 
 static void cut(nt_buffer *text, size_t size)
 {

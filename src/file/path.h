@@ -1,14 +1,16 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Paths: folders and last parts, a path taken from another, what links make of it, and how reports show it. A path is
- * joined and compared as it is spelled, so that it keeps the links that it goes through; nt_path_real(),
- * nt_link_folder() and what stands on them ask the system, and note what links decide (trace.h).
+ * Names of files. Paths: folders and last parts, a path taken from another, what links make of it, and how reports show
+ * it. A path is joined and compared as it is spelled, so that it keeps the links that it goes through; nt_path_real(),
+ * nt_link_folder() and what stands on them ask the system, and note what links decide (nt_trace_note()). Behind them
+ * are URIs as glTF uses them.
  */
 #ifndef NT_FILE_PATH_H
 #define NT_FILE_PATH_H
 
 #include <limits.h>
 #include <stdbool.h>
+#include "base/memory.h"
 #include "base/text.h"
 
 /* ---- as it is spelled ---- */
@@ -87,5 +89,57 @@ void nt_shown_path(const nt_shown_paths *paths, const char *path, nt_buffer *out
 void nt_opened_path(const nt_shown_paths *paths, const char *path, nt_buffer *out);
 
 void nt_shown_paths_free(nt_shown_paths *paths);
+
+/* ---- URIs: data URIs, and names of files beside the document ---- */
+
+/* Whether a URI carries its data. */
+bool nt_uri_is_data(const char *uri, size_t length);
+
+/*
+ * Decodes a data URI of any media type, base64 or percent-encoded.
+ *
+ *   bytes  receives a malloc'ed block, never NULL on success
+ *   size   receives its size
+ *
+ * Returns NT_OK, NT_ERROR_INPUT (the message names the position in the URI) or
+ * NT_ERROR_MEMORY.
+ */
+nt_status nt_uri_decode_data(const char *uri, size_t length, unsigned char **bytes, size_t *size,
+	nt_error *error);
+
+/*
+ * Finds the file that a relative URI names.
+ *
+ *   document       path of the file the URI stands in; "-": the current folder
+ *   uri, length    as in the document, percent-encoded
+ *   allow_outside  the file may lie outside the document's folder, by "..", as an absolute path or
+ *                  through a symbolic link; otherwise that is refused
+ *   path           receives the path, in the arena
+ *
+ * Schemes, NULs and empty names are always refused. Returns NT_OK, NT_ERROR_INPUT,
+ * NT_ERROR_UNSUPPORTED (a scheme), NT_ERROR_IO (no such file) or NT_ERROR_MEMORY; the message
+ * names the URI.
+ */
+nt_status nt_uri_resolve(nt_arena *arena, const char *document, const char *uri, size_t length,
+	bool allow_outside, const char **path, nt_error *error);
+
+/* Whether a decoded name has a step "..", with "/" or "\\". */
+bool nt_uri_has_parent_step(const char *name);
+
+/* Appends the path that a relative URI without a scheme spells. */
+void nt_uri_append_decoded(nt_buffer *text, const char *uri, size_t length);
+
+/* Appends the name of the file that a URI names beside the document. False: it names something else, in another folder
+ * or with a scheme, or memory is exhausted. */
+bool nt_uri_append_name(nt_buffer *name, const char *uri, size_t length);
+
+/* Appends a path as a URI: everything but letters, digits and "-._~/" is percent-encoded. */
+void nt_uri_append_path(nt_buffer *buffer, const char *path);
+
+/* Appends the URI by which a document in `folder` reaches `path`; both absolute and resolved. */
+void nt_link_uri(nt_buffer *text, const char *folder, const char *path);
+
+/* Appends "data:<media_type>;base64," and the data. */
+void nt_uri_append_data(nt_buffer *buffer, const char *media_type, const void *bytes, size_t size);
 
 #endif

@@ -27,7 +27,7 @@
 #include <string.h>
 #include <unistd.h>
 #include "base/memory.h"
-#include "file/trace.h"
+#include "file/input.h"
 
 /* A name's length in any file system; the digits of a digest that a name has; names that are tried. */
 enum { MOST_NAME_BYTES = 255, NAME_ROOM = 1024, NAME_DIGITS = 16, MOST_NUMBERS = 1000 };

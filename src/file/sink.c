@@ -4,7 +4,7 @@
  * through.
  */
 #include "file/output_parts.h"
-#include "file/watch.h"
+#include "file/input.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -120,7 +120,7 @@ static bool share_blocks(nt_sink *sink, const nt_file *from)
 
 /* A large range of a file goes through the buffer, which stays in the cache: 0.04 s of processor time for 200 MB, as cp
  * takes, while writing from the map took 0.17 (Zen 5, ext4). Pages of the map are let go. If the file cannot be read,
- * the map says what is there (watch.h). */
+ * the map says what is there (watch.c). */
 nt_status nt_sink_copy(nt_sink *sink, const nt_file *from, size_t offset, size_t size, nt_error *error)
 {
 	if (offset > from->size || size > from->size - offset)

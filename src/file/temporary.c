@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Temporary files that a signal removes: see temporary.h.
+ * Temporary files that a signal removes: see output.h.
  *
  * The list is plain and guarded by a spin lock. A thread that takes the lock blocks the signals in its own thread
  * first, so the handler never waits for the thread it interrupted; it may wait for others: for those that hold, and
@@ -10,7 +10,7 @@
  *
  * Files are made, renamed and removed by the descriptor of their folder: somebody may move that meanwhile.
  */
-#include "file/temporary.h"
+#include "file/output.h"
 
 #include <ctype.h>
 #include <dirent.h>
@@ -28,7 +28,7 @@
 #include <sys/stat.h>
 #include <sys/vfs.h>
 #include <unistd.h>
-#include "file/lookup.h"
+#include "file/input.h"
 #include "file/path.h"
 
 /* Attempts to find a free name: names of ended processes with our number are rare. */

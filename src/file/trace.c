@@ -1,15 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Files that a run reads and writes: see trace.h.
+ * Files that a run reads and writes: see input.h.
  */
-#include "file/trace.h"
+#include "file/input.h"
 
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
 #include "base/memory.h"
-#include "file/lookup.h"
 
 static _Thread_local nt_trace *current;
 

@@ -5,15 +5,14 @@
  * absolute path, a drive letter, a scheme) nor through a symbolic link. The text is checked after percent
  * decoding and with both kinds of slash, the link by comparing real paths.
  */
-#include "file/uri.h"
+#include "file/path.h"
 
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
-#include "file/base64.h"
-#include "file/lookup.h"
-#include "file/path.h"
+#include "file/input.h"
+#include "file/output.h"
 
 enum { SHOWN = 200 }; /* characters of a URI that a message shows */
 

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Mapped files that change: see watch.h.
+ * Mapped files that change: see input.h.
  *
  * The handler looks the address up in a plain table of atomics and lays zeros over the map from the faulting page to
  * its end; mmap() is a system call and no more on every system that we know. A fault elsewhere gets the action
  * that was set before.
  */
-#include "file/watch.h"
+#include "file/input.h"
 
 #include <pthread.h>
 #include <signal.h>

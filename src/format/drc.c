@@ -5,13 +5,13 @@
  * up, as in the OBJ and PLY files that Draco's own tools encode. Generic attributes have no meaning that a .drc
  * tells, so they are passed over, with a finding.
  */
-#include "format/drc.h"
+#include "format/format.h"
 
 #include <math.h>
 #include <string.h>
 #include "ext/draco.h"
 #include "gltf/quantize.h"
-#include "scene/srgb.h"
+#include "scene/values.h"
 
 bool nt_drc_recognise(const unsigned char *bytes, size_t size)
 {

@@ -7,7 +7,6 @@
 
 #include <string.h>
 #include <strings.h>
-#include "format/drc.h"
 #include "gltf/create/create.h"
 #include "gltf/document.h"
 #include "gltf/edit/edit.h"

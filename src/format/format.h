@@ -51,4 +51,11 @@ const nt_format_entry *nt_format_unnamed(const nt_format_entry *reader);
  * NULL: it is none that is known. Static. */
 const char *nt_foreign_advice(const unsigned char *bytes, size_t size, const char *path);
 
+/* ---- Draco files (.drc): drc.c ---- */
+
+bool nt_drc_recognise(const unsigned char *bytes, size_t size);
+
+/* Describes and loads the mesh of scene->bytes. */
+nt_status nt_drc_open(nt_scene *scene, const nt_read_options *options, nt_error *error);
+
 #endif

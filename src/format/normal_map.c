@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * From a mesh to the bytes of its normal map: see normal_map.h.
+ * From a mesh to the bytes of its normal map: see maps.h.
  */
-#include "format/normal_map.h"
+#include "format/maps.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include "file/uri.h"
+#include "file/path.h"
 #include "gltf/document.h"
 #include "gltf/edit/images.h"
-#include "image/find.h"
 #include "image/image.h"
+#include "image/textures.h"
 
 /* A faulty map is left out, and nothing else; its bytes stay NULL. */
 static nt_status without_map(nt_status status)

@@ -1,19 +1,18 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Normal maps of a glTF turned: see turned_maps.h. An image is decoded once, however many materials have it as a
+ * Normal maps of a glTF turned: see maps.h. An image is decoded once, however many materials have it as a
  * normal map. Other materials keep the image: textures are counted by who refers to them, as normal map and at all,
  * and where the two differ the material gets a texture of its own. VRM 0 says in the root what shaders sample, normal
  * maps once more. Other extensions whose textures are not called ...Texture are not seen; a texture that nobody is seen
  * to use counts as theirs.
  */
-#include "format/turned_maps.h"
+#include "format/maps.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include "base/parallel.h"
 #include "ext/gltf_numbers.h"
-#include "format/normal_map.h"
 #include "gltf/document.h"
 #include "image/image.h"
 

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "file/output.h"
-#include "file/uri.h"
+#include "file/path.h"
 #include "gltf/glb.h"
 
 bool nt_gltf_recognise(const unsigned char *bytes, size_t size)

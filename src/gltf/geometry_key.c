@@ -8,10 +8,10 @@
  * users of a pool have one TANGENT (vertex_pools.c), and which joins are those of another mesh (joins.c).
  */
 #include <stdlib.h>
-#include "gltf/draco.h"
 #include "gltf/document.h"
+#include "gltf/draco.h"
 #include "gltf/vertex_pools.h"
-#include "scene/transform.h"
+#include "scene/values.h"
 
 /* ---- keys ---- */
 

@@ -20,7 +20,7 @@
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
-#include "scene/transform.h"
+#include "scene/values.h"
 
 /* Primitives without a kind take part in the joins of so many kinds of a mesh, so that a file with a transform for
  * every primitive costs linear time and memory. Meshes that people make have one or two kinds. */

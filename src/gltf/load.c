@@ -14,7 +14,7 @@
 #include "gltf/document.h"
 #include "gltf/draco.h"
 #include "gltf/quantize.h"
-#include "scene/transform.h"
+#include "scene/values.h"
 
 /* Elements that an accessor without a bufferView may have when nothing in the file backs the number. */
 enum { UNBACKED_ELEMENTS = 65536 };

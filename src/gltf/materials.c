@@ -10,7 +10,7 @@
 #include <stdio.h>
 #include <string.h>
 #include "base/text.h"
-#include "scene/transform.h"
+#include "scene/values.h"
 
 /* Demands of a slot. */
 typedef struct demand {

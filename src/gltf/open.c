@@ -15,9 +15,8 @@
 #include <string.h>
 #include <unistd.h>
 #include "base/text.h"
-#include "file/lookup.h"
-#include "file/trace.h"
-#include "file/uri.h"
+#include "file/input.h"
+#include "file/path.h"
 #include "gltf/document.h"
 #include "gltf/draco.h"
 

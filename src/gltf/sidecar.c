@@ -7,7 +7,7 @@
 
 #include <string.h>
 #include "base/memory.h"
-#include "file/uri.h"
+#include "file/path.h"
 #include "gltf/glb.h"
 
 static const char key_digest[] = "nmtan:xxh128", key_before[] = "nmtan:replaces";

@@ -1,15 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Making one image: see conversion.h. Packing holds the samples of all its images at once, and those
+ * Making one image: see textures.h. Packing holds the samples of all its images at once, and those
  * of the result; each image is decoded once.
  */
-#include "image/conversion.h"
+#include "image/textures.h"
 
 #include <stdlib.h>
 #include <string.h>
 #include "base/hash.h"
-#include "image/examine.h"
-#include "image/heights.h"
+#include "image/image.h"
 
 /* ---- conversions ---- */
 

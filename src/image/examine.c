@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Facts of normal maps: see examine.h.
+ * Facts of normal maps: see image.h.
  *
  * Which way is green: the map of a surface h has the slopes p = -x/z = dh/du and, if green is up, q = y/z = dh/dv, with
  * rows counted down as glTF's v is. Both mixed derivatives are then one: dp/dv = dq/du. If green is down, q has the
@@ -15,13 +15,12 @@
  * (tinyrenderer's african head, the rivets of DamagedHelmet). Then the map is mixed, as it is if a sixth of its blocks
  * say up and as many down (fewer are rings around what was painted, and streaks of padding), and is left as it is.
  */
-#include "image/examine.h"
+#include "image/image.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include "base/memory.h"
-#include "image/image.h"
 
 enum { MOST_SIDE = 1024, LEAST_SIDE = 48, BLOCKS = NT_GREEN_BLOCKS, LEAST_BLOCKS = 12, LEAST_MIXED = 24 };
 

@@ -1,19 +1,15 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Finding images: see find.h. A candidate is a folder that we may look into and a relative name in it; whatever
+ * Finding images: see textures.h. A candidate is a folder that we may look into and a relative name in it; whatever
  * it leads to is resolved and compared with the folder before it counts.
  */
-#include "image/find.h"
+#include "image/textures.h"
 
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-#include "file/image_type.h"
 #include "file/input.h"
-#include "file/lookup.h"
 #include "file/path.h"
-#include "file/trace.h"
-#include "file/uri.h"
 
 /* So many last parts of a name are looked for: each is one more look into every folder. */
 enum { MOST_PARTS = 32 };

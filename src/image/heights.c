@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Height maps to normal maps: see heights.h. Three rows of heights at a time.
+ * Height maps to normal maps: see image.h. Three rows of heights at a time.
  */
-#include "image/heights.h"
+#include "image/image.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Channels from image to image: see pack.h. A number depends on one sample alone, so that a table has the results for
+ * Channels from image to image: see image.h. A number depends on one sample alone, so that a table has the results for
  * all of them; between samples, where sizes differ, it is worked out.
  */
-#include "image/pack.h"
+#include "image/image.h"
 
 #include <math.h>
 #include <stdlib.h>

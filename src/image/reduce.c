@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Small images: see reduce.h. Each pixel is the mean of those that it stands for, of the samples as they are stored.
+ * Small images: see image.h. Each pixel is the mean of those that it stands for, of the samples as they are stored.
  */
-#include "image/reduce.h"
+#include "image/image.h"
 
 enum { QUALITY = 80 };
 

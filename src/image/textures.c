@@ -16,8 +16,8 @@
 #include "base/hash_index.h"
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "file/output.h"
 #include "file/path.h"
-#include "file/temporary.h"
 
 /* Results that are larger wait in files: a thousand smaller ones take less memory than one image being decoded. */
 enum { FILED_BYTES = 256 * 1024 };

@@ -9,8 +9,122 @@
 #ifndef NT_IMAGE_TEXTURES_H
 #define NT_IMAGE_TEXTURES_H
 
-#include "image/find.h"
-#include "image/conversion.h"
+#include <stdbool.h>
+#include "base/text.h"
+#include "file/input.h"
+#include "image/image.h"
+
+/* ---- the file of a name in a material: find.c ---- */
+
+/* Names may be paths of another machine, of a system without case, or of a folder that was moved. Unless the user
+ * allows it, files outside of the folders that are listed below are not found, also not through a symbolic link, and
+ * nobody looks whether they are there. */
+
+/* Places to search. */
+typedef struct nt_image_places {
+	const char *document;       /* the file that has the name (MTL): names are relative to its folder */
+	const char *input;          /* the file that has the document (OBJ); NULL: none */
+	const char *const *folders; /* [folder_count] of the user's choice */
+	size_t folder_count;
+	const char *root;           /* a folder of the user's in and below which images may be; NULL: none */
+	bool confined;              /* neither there nor in the folder above the input's */
+	bool allow_outside;         /* anywhere */
+	bool given;                 /* names are paths of the user's, and nothing else is looked for */
+} nt_image_places;
+
+typedef enum nt_image_found {
+	NT_IMAGE_FOUND,           /* as it is named */
+	NT_IMAGE_FOUND_ELSEWHERE, /* by a part of its name, in another folder, or in another case */
+	NT_IMAGE_MISSING,
+	NT_IMAGE_OUTSIDE          /* where nobody may look */
+} nt_image_found;
+
+/*
+ * Looks for a file in this order; the first that exists is it.
+ *
+ * 1. the name as it is, from the document's folder
+ * 2. in the document's folder, the input's and `folders`, in this order: the name's last parts, as many as lead to a
+ *    file (of C:\art\tex\n.png: art/tex/n.png, tex/n.png, n.png)
+ * 3. both without regard to case (of ASCII); of several files the first in the order of bytes
+ *
+ * A file counts if its real path is in or below the folder where the name is looked for, `root`, or the folder above
+ * the input's; there it has to be an image by its content, since all else that lies there is not told from what does
+ * not. The root of the file system is neither.
+ *
+ *   path   appended: absolute, links kept; of what is missing, where it would be by the document
+ *   found  receives how it was found
+ *
+ * Returns NT_OK, also for what is not found, NT_ERROR_IO or NT_ERROR_MEMORY.
+ */
+nt_status nt_image_find(const nt_image_places *places, const char *name, nt_buffer *path, nt_image_found *found,
+	nt_error *error);
+
+/* ---- one image of an output, from files: conversion.c ---- */
+
+/* As it is, converted, a height map made a normal map, green turned around, or put together of channels of several.
+ * Knows bytes and pixels; which files there are is textures.c's. */
+
+/* Normal maps whose green points down get it turned around. */
+typedef enum nt_flip {
+	NT_FLIP_OFF,
+	NT_FLIP_AUTO, /* where nt_examine_image() is sure */
+	NT_FLIP_ON    /* all of them */
+} nt_flip;
+
+/* One channel of what is put together, in the order red, green, blue, alpha. */
+typedef struct nt_conversion_channel {
+	bool used;           /* somebody samples it */
+	uint32_t source;     /* number of the image; UINT32_MAX: none, it is white */
+	nt_channel_map map;
+} nt_conversion_channel;
+
+typedef struct nt_conversion {
+	nt_conversion_channel channels[4]; /* without `packed` the source of the first is the image; with `heights` its
+	                              map is applied */
+	bool packed;
+	bool png;        /* the result is a PNG, whatever the file is */
+	nt_flip flip;
+	bool heights;
+	double height;   /* these two only with heights; clamp with packed, too */
+	bool clamp;
+	const char *suffix; /* of the name of what is made; only with packed */
+} nt_conversion;
+
+/* The result. */
+typedef struct nt_converted {
+	bool made;            /* a PNG; else the file of the first channel is the result */
+	unsigned char *bytes; /* of it, in a malloc'ed block; NULL: nothing was made, or it was only judged */
+	size_t size;
+	bool flipped;
+	nt_alpha_mode alpha;
+	unsigned damaged;     /* bits: channels whose image cannot be decoded, which are white */
+} nt_converted;
+
+bool nt_conversion_equal(const nt_conversion *a, const nt_conversion *b);
+uint64_t nt_conversion_hash(const nt_conversion *how);
+
+/* Whether it takes decoding at all. */
+bool nt_conversion_decodes(const nt_conversion *how);
+
+/* Whether packed channels are those of one image in their order, as they are. */
+bool nt_conversion_is_identity(const nt_conversion *how);
+
+/* Makes one of conversions of which the results differ in what their pixels are alone. */
+void nt_conversion_simplify(nt_conversion *how);
+
+/*
+ * Makes it.
+ *
+ *   files  [4] of the channels, where they have a source; equal sources have equal files
+ *   judged_only  no pixels are made but those that show what it comes to
+ *
+ * Returns NT_OK, also with damaged channels, as long as one that is used is left (the error says what is wrong with the
+ * last of them), or what nt_image_decode() and nt_encode_png() do.
+ */
+nt_status nt_conversion_make(const nt_conversion *how, const nt_file *const files[4], bool judged_only,
+	nt_converted *made, nt_error *error);
+
+/* ---- all of them: textures.c ---- */
 
 /* Images that a new document gets from its materials. */
 typedef enum nt_texture_choice {
@@ -42,7 +156,7 @@ typedef struct nt_texture_request {
 	nt_texture_kind kind;
 	nt_texture_channel channels[4]; /* red, green, blue, alpha; if not packed the first alone, of which the map
 	                                   counts for heights */
-	double height;      /* of heights: see image/heights.h */
+	double height;      /* of heights: see nt_heights_to_normals() */
 	bool clamp;         /* of heights and what is packed */
 	const char *suffix; /* of the name of what is packed; stays */
 } nt_texture_request;

@@ -2,7 +2,7 @@
 /*
  * Lines that are read again, by the same parser.
  *
- * Positions that float cannot hold: the rule is that of scene/origin.h. All vertices have their positions as floats
+ * Positions that float cannot hold: the rule is that of scene/values.h. All vertices have their positions as floats
  * when it is asked. Only if these are suspicious are the `v` lines read again, as doubles.
  *
  * The line of a face: nothing is kept of it while the file is read, as only reports ask for it, and for a few faces.
@@ -14,7 +14,7 @@
 #include <stdatomic.h>
 #include <stdlib.h>
 #include "base/parallel.h"
-#include "scene/origin.h"
+#include "scene/values.h"
 
 enum { GRAIN = 1 << 14 }; /* vertices for each thread that are worth one */
 

@@ -21,7 +21,7 @@
 #include "base/compiler.h"
 #include "base/text.h"
 #include "file/decimal.h"
-#include "scene/srgb.h"
+#include "scene/values.h"
 
 /* A chunk's arrays begin with room for one element per this many bytes of text, which is about what
  * dense files hold; memory that is not used is never touched. */

@@ -12,10 +12,7 @@
 #include <string.h>
 #include "base/hash_index.h"
 #include "base/parallel.h"
-#include "scene/origin.h"
-#include "scene/polygon.h"
-#include "scene/srgb.h"
-#include "scene/transform.h"
+#include "scene/values.h"
 
 enum { GRAIN = 1 << 14 }; /* rows per thread that are worth one */
 

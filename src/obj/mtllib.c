@@ -7,9 +7,7 @@
 #include <string.h>
 #include <strings.h>
 #include "file/input.h"
-#include "file/lookup.h"
 #include "file/path.h"
-#include "file/uri.h"
 #include "obj/parts.h"
 
 /* Arguments of reading the libraries that mtllib statements name. */

@@ -10,7 +10,7 @@
 
 #include <stdlib.h>
 #include <string.h>
-#include "image/examine.h"
+#include "image/image.h"
 
 void nt_fixes_free(nt_fixes *fixes)
 {

@@ -29,7 +29,7 @@
 #include "base/parallel.h"
 #include "base/structs.h"
 #include "gltf/load.h"
-#include "scene/morphs.h"
+#include "scene/values.h"
 
 enum {
 	LARGE_CORNERS = 3 * 128 * 1024,  /* from here on a mesh is worth all threads, whatever else there is */

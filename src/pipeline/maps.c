@@ -9,8 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "base/parallel.h"
-#include "format/normal_map.h"
-#include "image/examine.h"
+#include "format/maps.h"
 #include "image/image.h"
 
 /* Largest file that --check-maps=auto decodes; how many images are open at a time. */

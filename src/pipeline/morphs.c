@@ -28,7 +28,7 @@
 #include "base/hash_index.h"
 #include "base/vec.h"
 #include "gltf/quantize.h"
-#include "scene/morphs.h"
+#include "scene/values.h"
 
 enum { KEY_BITS = 20 }; /* of a class number in each float of a key: floats are exact to 24 */
 

@@ -13,7 +13,7 @@
 
 #include <stdlib.h>
 #include "base/structs.h"
-#include "image/examine.h"
+#include "image/image.h"
 #include "topology/corners.h"
 
 /* Share of the triangles whose w may be right all the same: slivers. */

@@ -2,16 +2,14 @@
 /*
  * The report of a run: see stages.h.
  */
-#include "file/watch.h"
+#include "file/input.h"
 #include "pipeline/stages.h"
 
 #include <stdlib.h>
 #include <string.h>
-#include "file/image_type.h"
 #include "file/path.h"
-#include "file/uri.h"
-#include "format/normal_map.h"
-#include "image/reduce.h"
+#include "format/maps.h"
+#include "image/image.h"
 
 /* A base colour in a page: the pixels of its longer side; and a file that is small enough to be there as it is. */
 enum { PREVIEW_PIXELS = 1024, PREVIEW_BYTES = 1 << 16 };

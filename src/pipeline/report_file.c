@@ -12,10 +12,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 #include "file/input.h"
-#include "file/lookup.h"
 #include "file/output.h"
 #include "file/path.h"
-#include "file/uri.h"
 
 /* Names may have 255 bytes; the rest is for endings and temporary names. */
 enum { MOST_STEM = 100, HEAD_BYTES = 1024 };

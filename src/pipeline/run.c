@@ -10,15 +10,14 @@
 #include <stdlib.h>
 #include <string.h>
 #include "base/deadline.h"
-#include "file/watch.h"
+#include "file/input.h"
 #include "format/format.h"
-#include "format/normal_map.h"
-#include "format/turned_maps.h"
+#include "format/maps.h"
 #include "gltf/sidecar.h"
 #include "gltf/verify/verify.h"
 #include "pipeline/stages.h"
 #include "pipeline/timer.h"
-#include "scene/origin.h"
+#include "scene/values.h"
 
 /* Shared data of the stages of one run. */
 typedef struct run {

@@ -5,12 +5,12 @@
 #ifndef NT_PIPELINE_SETTINGS_H
 #define NT_PIPELINE_SETTINGS_H
 
+#include "file/input.h"
 #include "file/output.h"
-#include "file/trace.h"
 #include "image/textures.h"
 #include "report/report.h"
 #include "scene/format.h"
-#include "scene/select.h"
+#include "scene/scene.h"
 
 /* If normals are missing; the last three replace authored ones, too. */
 typedef enum nt_normals {

@@ -19,7 +19,7 @@
 #include "base/memory.h"
 #include "base/structs.h"
 #include "gltf/load.h"
-#include "scene/morphs.h"
+#include "scene/values.h"
 #include "tangent/frames.h"
 
 /* Whether a part is a mesh of the scene. */

@@ -10,9 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 #include "base/text.h"
-#include "file/lookup.h"
+#include "file/input.h"
 #include "file/path.h"
-#include "file/uri.h"
 
 /* Materials that faces use, in the order of the meshes: first the *mapped ones that a mesh with texture coordinates
  * uses. Malloc'ed; NULL: memory is exhausted. */

@@ -10,7 +10,7 @@
 #include <signal.h>
 #include <string.h>
 #include "base/deadline.h"
-#include "file/temporary.h"
+#include "file/output.h"
 
 /* Time for a run to end by itself: most of the tenth of a second within which it is to be over. */
 static const double grace_seconds = 0.06;

@@ -13,8 +13,7 @@
 
 #include <stdlib.h>
 #include "base/hash_index.h"
-#include "scene/origin.h"
-#include "scene/polygon.h"
+#include "scene/values.h"
 
 /* So many rows of faces with texture coordinates are read at a time. */
 enum { WEDGE_ROWS = 1 << 14 };
@@ -382,7 +381,7 @@ static nt_status read_exact(const nt_mesh *mesh, const ply_source *source, doubl
 }
 
 /* Gives the scene an origin if it needs one, or the user names one: positions are then others. The rule is that of
- * scene/origin.h. It is asked when all floats and faces have been read, and only if the properties are doubles or
+ * scene/values.h. It is asked when all floats and faces have been read, and only if the properties are doubles or
  * integers of 32 bits, or the user names an origin. */
 static nt_status settle_origin(nt_scene *scene, nt_mesh *mesh, const ply_source *source, const nt_origin *wished,
 	nt_error *error)

@@ -18,7 +18,7 @@
 #include "base/vec.h"
 #include "file/output.h"
 #include "scene/scene.h"
-#include "scene/srgb.h"
+#include "scene/values.h"
 
 /* ---- values ---- */
 

@@ -15,7 +15,7 @@
 #include <stdlib.h>
 #include "base/parallel.h"
 #include "ply/parts.h"
-#include "scene/srgb.h"
+#include "scene/values.h"
 
 bool nt_ply_recognise(const unsigned char *bytes, size_t size)
 {

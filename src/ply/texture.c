@@ -8,9 +8,8 @@
 #include <string.h>
 #include <unistd.h>
 #include "base/hash_index.h"
-#include "file/image_type.h"
+#include "file/input.h"
 #include "file/path.h"
-#include "file/uri.h"
 
 /* MeshLab drops all other characters of a name. */
 static bool is_read_by_all(char c)

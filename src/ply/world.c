@@ -10,7 +10,7 @@
 #include "ply/parts.h"
 
 #include "base/vec.h"
-#include "scene/origin.h"
+#include "scene/values.h"
 
 static bool is_written(const nt_mesh *mesh)
 {

@@ -13,8 +13,8 @@
 #include <stdlib.h>
 #include <string.h>
 #include "base/text.h"
-#include "scene/origin.h"
-#include "scene/select.h"
+#include "scene/scene.h"
+#include "scene/values.h"
 
 /* ---- facts that need no check ---- */
 

@@ -15,7 +15,7 @@
 #include <string.h>
 #include "base/angle.h"
 #include "base/vec.h"
-#include "scene/origin.h"
+#include "scene/values.h"
 
 /* A seam lies in a plane when its points keep within this part of the mesh's extent. */
 static const double PLANE_TOLERANCE = 1e-4;

@@ -130,7 +130,7 @@ typedef struct nt_finding {
 	                        empty */
 	const char *repair;  /* options that repair this one; NULL: those of the table */
 	bool stays;          /* nothing here repairs this one, whatever the table says */
-	const int8_t *votes; /* [votes_side][votes_side] of a normal map's blocks: see image/examine.h; NULL: none */
+	const int8_t *votes; /* [votes_side][votes_side] of a normal map's blocks: see image/image.h; NULL: none */
 	unsigned votes_side;
 	const struct nt_mesh *judged; /* an info unless this mesh needs tangents, which its images may decide later;
 	                                 NULL: the severity stays. Ends with the scene */

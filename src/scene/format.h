@@ -42,7 +42,7 @@ typedef enum nt_transform_choice {
 	NT_TRANSFORM_KEEP  /* of those in the file: a renderer turns TANGENT itself */
 } nt_transform_choice;
 
-/* The origin that positions of OBJ and PLY are stored relative to: scene/origin.h. */
+/* The origin that positions of OBJ and PLY are stored relative to: scene/values.h. */
 typedef enum nt_origin_choice {
 	NT_ORIGIN_AUTO, /* what float needs: nothing for most files */
 	NT_ORIGIN_KEEP, /* nothing */

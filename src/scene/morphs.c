@@ -9,7 +9,7 @@
  * that of the base; all rows, if that takes less. So what waits is about what a sparse accessor takes, and at most the
  * floats of the output.
  */
-#include "scene/morphs.h"
+#include "scene/values.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * An origin for positions that float cannot hold: see origin.h.
+ * An origin for positions that float cannot hold: see values.h.
  */
-#include "scene/origin.h"
+#include "scene/values.h"
 
 #include <stdio.h>
 #include <stdlib.h>

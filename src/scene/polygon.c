@@ -19,7 +19,7 @@
  * Every triangle of a sound result is counter-clockwise in the plane. If there is no ear (crossing
  * outlines, spikes, repeated points) a corner is cut off all the same and the result is not sound.
  */
-#include "scene/polygon.h"
+#include "scene/values.h"
 
 #include <float.h>
 #include <math.h>

@@ -126,7 +126,7 @@ typedef struct nt_morph {
 	const char *name;       /* "" where it has none */
 	const struct nt_displacement *positions, *normals; /* what is added to the base's, for nt_gltf_move(); NULL:
 	                                                     nothing */
-	size_t class_count, row_count, first_word; /* of its tangents then: scene/morphs.h */
+	size_t class_count, row_count, first_word; /* of its tangents then: scene/values.h */
 	size_t turned_triangles;  /* that it turns to the other side of their normals: no w serves them with and
 	                             without it */
 	size_t halfway_triangles; /* where adding half of the deltas is wrong by more than 5 degrees */
@@ -208,7 +208,7 @@ static inline const char *nt_doubt_text(nt_doubt doubt)
 typedef struct nt_mesh_map {
 	uint32_t number; /* one more than which of the scene's; 0: there is none, or it is not known */
 	uint32_t image;  /* of the glTF */
-	uint8_t green;   /* nt_green of image/examine.h */
+	uint8_t green;   /* nt_green of image/image.h */
 	bool examined, decodable; /* it was decoded; it could be */
 	bool turnable;   /* --flip-green turns it */
 } nt_mesh_map;
@@ -236,7 +236,7 @@ typedef struct nt_mesh {
 	const char *asked_set;   /* the set that --uv asks for is not there, others are: a sentence; NULL */
 	nt_wrap wrap[2];         /* along u and v, of the texture that tangents serve */
 	float wrap_offset[2];    /* of its transform, v up, where it is mirrored: elsewhere an offset moves all alike */
-	const struct nt_uv_transform *transform; /* what turns or scales that set; NULL: nothing (scene/transform.h) */
+	const struct nt_uv_transform *transform; /* what turns or scales that set; NULL: nothing (scene/values.h) */
 	bool texcoords_transformed; /* textures may be looked up elsewhere than the set says: glTF's texture
 	                               transforms */
 	bool compressed;         /* with Draco */
@@ -317,7 +317,7 @@ typedef struct nt_mesh {
 
 	nt_morph *morphs;         /* [morph_count] targets that move positions or normals; filled by load() */
 	size_t morph_count;
-	struct nt_morph_tangents *morph_tangents; /* once they are solved: scene/morphs.h; NULL: none */
+	struct nt_morph_tangents *morph_tangents; /* once they are solved: scene/values.h; NULL: none */
 
 	/* results */
 	float *corner_tangents;   /* [corner_count][4]; NULL until solved or after split */
@@ -536,5 +536,24 @@ static inline bool nt_mesh_needs_tangents(const nt_mesh *mesh, bool judged_as_gl
 {
 	return !judged_as_gltf || mesh->slots != 0;
 }
+
+/* ---- which meshes get tangents, by the rules of the glTF specification and its extensions: select.c ---- */
+
+typedef enum nt_only { NT_ONLY_AUTO, NT_ONLY_NEEDED, NT_ONLY_ALL } nt_only;
+typedef enum nt_existing { NT_EXISTING_KEEP, NT_EXISTING_REPAIR, NT_EXISTING_REPLACE, NT_EXISTING_DROP } nt_existing;
+
+/* Which meshes get normals that are made. */
+typedef enum nt_making_normals {
+	NT_MAKING_NONE,
+	NT_MAKING_MISSING,     /* those that get tangents, and lack them */
+	NT_MAKING_ALL_MISSING, /* of a glTF, also those that get no tangents; other formats load these in any case */
+	NT_MAKING_ALL          /* the same, and those that have some get others */
+} nt_making_normals;
+
+/* Sets the decision of every mesh of the scene; findings name the meshes that need tangents and cannot have them. */
+void nt_select(nt_scene *scene, nt_only only, nt_existing existing, nt_making_normals normals);
+
+/* A few words why a mesh was or was not solved: "no material of it uses tangents". */
+const char *nt_decision_text(nt_decision decision);
 
 #endif

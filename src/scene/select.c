@@ -12,7 +12,7 @@
  * clients shade it flat and ignore tangents in the first case, and have no direction in the second. If it has
  * tangents and normals all the same, those of them that are invalid can be mended.
  */
-#include "scene/select.h"
+#include "scene/scene.h"
 
 #include <stdio.h>
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * sRGB and linear light: see srgb.h.
+ * sRGB and linear light: see values.h.
  */
-#include "scene/srgb.h"
+#include "scene/values.h"
 
 #include <float.h>
 #include <math.h>

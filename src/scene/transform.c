@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Texture coordinates through a texture transform: see transform.h.
+ * Texture coordinates through a texture transform: see values.h.
  *
  * KHR_texture_transform's text says counterclockwise and its code clockwise (v points down); viewers and the sample
  * model do what the text says, and with v up that is the usual rotation.
  */
-#include "scene/transform.h"
+#include "scene/values.h"
 
 #include <math.h>
 

@@ -16,11 +16,9 @@
 
 /* ---- triangles ---- */
 
-/*
- * Faces of 3 as they are, faces of 4 cut in two. A cut takes 4 bytes a triangle, and vertices are looked up through
- * it. Arrays of corners and of vertices would be read in one go, but take 24 bytes, more than everything else of a
- * mesh of quads that does not fit its output.
- */
+/* Faces of 3 as they are, faces of 4 cut in two. A cut takes 4 bytes a triangle, and vertices are looked up through it.
+ * Arrays of corners and of vertices would be read in one go, but take 24 bytes, more than everything else of a mesh of
+ * quads that does not fit its output. */
 
 /* Corner k of a triangle is corner k of its face, or the one behind where bit k of its cut is set. Above these
  * bits is the first corner of the face, which is the same for halves of one quad. */

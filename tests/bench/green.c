@@ -11,8 +11,6 @@
 #include <string.h>
 #include "file/input.h"
 #include "file/path.h"
-#include "image/examine.h"
-#include "image/heights.h"
 #include "image/image.h"
 
 enum { SIDE = 256, FAMILIES = 5, PER_FAMILY = 20 };

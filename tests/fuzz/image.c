@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <zlib.h>
-#include "file/image_type.h"
+#include "file/input.h"
 #include "image/image.h"
 
 size_t LLVMFuzzerMutate(uint8_t *bytes, size_t size, size_t room);

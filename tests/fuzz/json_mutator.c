@@ -10,8 +10,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include "file/base64.h"
-#include "file/uri.h"
+#include "file/output.h"
+#include "file/path.h"
 #include "mutate.h"
 
 size_t LLVMFuzzerMutate(uint8_t *bytes, size_t size, size_t room);

@@ -8,7 +8,7 @@
 #include "base/text.h"
 #include "fail_alloc.h"
 #include "file/input.h"
-#include "file/uri.h"
+#include "file/path.h"
 #include "folder.h"
 #include "gltf/document.h"
 #include "gltf/load.h"

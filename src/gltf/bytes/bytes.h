@@ -7,10 +7,10 @@
 #ifndef NT_GLTF_BYTES_BYTES_H
 #define NT_GLTF_BYTES_BYTES_H
 
-#include "file/base64.h"
+#include "file/output.h"
+#include "gltf/document.h"
 #include "gltf/quantize.h"
 #include "gltf/vertex_pools.h"
-#include "gltf/document.h"
 
 /* ---- segments: segments.c ---- */
 

@@ -12,7 +12,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include "file/path.h"
-#include "file/uri.h"
 #include "image/textures.h"
 
 /* Treatment of one result of the textures. */

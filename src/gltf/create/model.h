@@ -14,7 +14,7 @@
 #include "ext/gltf_numbers.h"
 #include "file/output.h"
 #include "gltf/bytes/bytes.h"
-#include "image/pack.h"
+#include "image/image.h"
 #include "scene/scene.h"
 
 /* ---- the document: model.c ---- */

@@ -13,10 +13,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 #include "base/hash_index.h"
-#include "file/image_type.h"
-#include "file/lookup.h"
+#include "file/input.h"
 #include "file/path.h"
-#include "file/uri.h"
 #include "gltf/turned_images.h"
 
 nt_images nt_gltf_images_choice(const nt_write_options *options, const nt_gltf *document)

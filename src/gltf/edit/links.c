@@ -8,7 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include "file/path.h"
-#include "file/uri.h"
 
 const char *nt_gltf_external_uri(const nt_json_value *object, size_t *length)
 {

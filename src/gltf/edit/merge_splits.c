@@ -8,7 +8,7 @@
  * found by hash, since a hub may have any number of them. For a mesh that shares nothing the result is exactly its own
  * split, which is taken as it is.
  *
- * The tangents of morph targets stay with the mesh that gave them (scene/morphs.h), so that one target at a time is
+ * The tangents of morph targets stay with the mesh that gave them (scene/values.h), so that one target at a time is
  * unpacked. Two vertices have the same if 128 bits of keyed hashes are equal: to compare them themselves, all targets
  * would have to be there at once.
  */
@@ -20,7 +20,7 @@
 #include "base/vec.h"
 #include "gltf/document.h"
 #include "gltf/load.h"
-#include "scene/morphs.h"
+#include "scene/values.h"
 
 /* A pool whose meshes are merged one after the other. */
 typedef struct nt_pool_merge {

@@ -10,7 +10,7 @@
 #include <string.h>
 #include "gltf/document.h"
 #include "gltf/quantize.h"
-#include "scene/morphs.h"
+#include "scene/values.h"
 
 /* TANGENT of one target. */
 typedef struct target_tangents {

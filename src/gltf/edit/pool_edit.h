@@ -19,7 +19,7 @@ typedef struct nt_pool_set {
 	float *normals;       /* [new_count][3]: NULL where normals were not made */
 	float *source_normals; /* [old_count][3] of pooled meshes whose normals were not made; not to be written to */
 	size_t morph_count;
-	const nt_mesh *lone;  /* gives all vertices the tangents of targets: scene/morphs.h; NULL: several do */
+	const nt_mesh *lone;  /* gives all vertices the tangents of targets: scene/values.h; NULL: several do */
 	uint32_t *givers;     /* [new_count] the user that gives them; NT_NONE: they are the base's; NULL: lone */
 	uint32_t *given;      /* [new_count] its vertex there; NULL: the same one of lone */
 	uint64_t *digests;    /* [vertex][2] while splits are merged: of the tangents of all targets */

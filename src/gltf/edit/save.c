@@ -16,7 +16,7 @@
 
 #include <stdio.h>
 #include <string.h>
-#include "file/uri.h"
+#include "file/path.h"
 #include "gltf/document.h"
 #include "gltf/edit/images.h"
 #include "gltf/sidecar.h"

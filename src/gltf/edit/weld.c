@@ -18,7 +18,7 @@
 #include "base/hash_index.h"
 #include "gltf/document.h"
 #include "gltf/draco.h"
-#include "scene/morphs.h"
+#include "scene/values.h"
 
 /* Something that vertices have. */
 typedef struct column {

@@ -11,13 +11,12 @@
 #include <string.h>
 #include "base/parallel.h"
 #include "ext/tinygltf.h"
+#include "file/input.h"
 #include "file/path.h"
-#include "file/trace.h"
-#include "file/uri.h"
 #include "gltf/draco.h"
 #include "gltf/load.h"
 #include "gltf/quantize.h"
-#include "scene/morphs.h"
+#include "scene/values.h"
 
 /* ---- finding the files ---- */
 

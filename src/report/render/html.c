@@ -31,7 +31,7 @@
  * pack/pack.h. Written and forgotten mesh by mesh.
  */
 #include <math.h>
-#include "file/base64.h"
+#include "file/output.h"
 #include "report/pack/pack.h"
 #include "report/render/inside.h"
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "folder.h"
+#include "file/output.h"
 #include "test.h"
-#include "file/base64.h"
 
 /* Writes `size` bytes in pieces of `piece` and gives the text. */
 static char *encoded(const unsigned char *bytes, size_t size, size_t piece)

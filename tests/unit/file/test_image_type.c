@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "file/image_type.h"
+#include "file/input.h"
 #include "test.h"
 
 static nt_image_type type_of(const char *bytes, size_t size)

@@ -3,7 +3,6 @@
  * Output sets, in a folder of our own that is removed afterwards.
  */
 #include "file/output.h"
-#include "file/temporary.h"
 #include "folder.h"
 #include "test.h"
 

@@ -3,7 +3,6 @@
 
 #include <unistd.h>
 #include "file/path.h"
-#include "file/uri.h"
 
 /* The text that a function appends, as a string that lives until the next call. */
 static const char *taken(nt_buffer *text)

@@ -3,7 +3,7 @@
  * A process that faults removes its temporary files and ends, also where the faulting thread is in the midst of a
  * commit: it does not wait for itself.
  */
-#include "file/temporary.h"
+#include "file/output.h"
 #include "folder.h"
 #include "test.h"
 

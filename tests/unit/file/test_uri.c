@@ -3,7 +3,7 @@
 #include "test.h"
 #include <sys/stat.h>
 #include <unistd.h>
-#include "file/uri.h"
+#include "file/path.h"
 
 static void check_data(const char *uri, const char *expected, size_t expected_size)
 {

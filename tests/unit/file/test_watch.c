@@ -12,7 +12,6 @@
 #include <unistd.h>
 #include "file/input.h"
 #include "file/output.h"
-#include "file/watch.h"
 #include "folder.h"
 
 static size_t page;

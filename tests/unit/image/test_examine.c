@@ -2,7 +2,7 @@
 /*
  * Evidence in normal maps that are made from formulas. make bench-green has many more.
  */
-#include "image/examine.h"
+#include "image/image.h"
 
 #include <math.h>
 #include "fail_alloc.h"

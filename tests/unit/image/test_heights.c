@@ -2,7 +2,7 @@
 /*
  * Heights to normals, by theory: planes are exact, a hemisphere's normals are its radii, flat is (128, 128, 255).
  */
-#include "image/heights.h"
+#include "image/image.h"
 
 #include <math.h>
 #include "fail_alloc.h"

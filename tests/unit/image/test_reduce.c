@@ -2,7 +2,7 @@
 /*
  * Small pictures of larger ones whose left half is dark and whose right half is bright.
  */
-#include "image/reduce.h"
+#include "image/image.h"
 
 #include <stdlib.h>
 #include "fail_alloc.h"

@@ -4,10 +4,10 @@
  * sanitizers to see.
  */
 #include "folder.h"
-#include "test.h"
 #include "fail_alloc.h"
 #include "obj/read.h"
-#include "scene/polygon.h"
+#include "scene/values.h"
+#include "test.h"
 
 static nt_status open_text(const char *path, const char *text, nt_error *error)
 {

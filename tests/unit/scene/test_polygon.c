@@ -8,7 +8,7 @@
 #include "test.h"
 #include <math.h>
 #include <time.h>
-#include "scene/polygon.h"
+#include "scene/values.h"
 
 static double cross2(const double a[2], const double b[2], const double c[2])
 {

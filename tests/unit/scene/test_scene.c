@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "test.h"
 #include <math.h>
-#include "scene/origin.h"
 #include "scene/scene.h"
+#include "scene/values.h"
 
 TEST(meshes_are_called_as_their_source_calls_them)
 {

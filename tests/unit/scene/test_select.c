@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "report/codes.h"
-#include "scene/select.h"
+#include "scene/scene.h"
 #include "test.h"
 
 /* How a mesh differs from a reachable one of triangles with everything a solve takes. */

@@ -2,7 +2,7 @@
 /*
  * sRGB: the values of IEC 61966-2-1, computed apart.
  */
-#include "scene/srgb.h"
+#include "scene/values.h"
 #include "test.h"
 #include <float.h>
 #include <math.h>

@@ -5,7 +5,7 @@
 #include "gltf/load.h"
 #include "gltf/verify/verify.h"
 #include "hand_gltf.h"
-#include "scene/morphs.h"
+#include "scene/values.h"
 
 #include <math.h>
 

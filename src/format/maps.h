@@ -1,16 +1,20 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The image file of a mesh's normal map or base colour, for the report: its pictures, and what a normal map itself
- * says. Nothing else needs it, so nothing that is wrong with it is an error. Exhausted memory and faults of the system
- * are errors all the same.
+ * Normal maps of a scene: looked at for the report, and turned around.
  */
-#ifndef NT_FORMAT_NORMAL_MAP_H
-#define NT_FORMAT_NORMAL_MAP_H
+#ifndef NT_FORMAT_MAPS_H
+#define NT_FORMAT_MAPS_H
 
-#include "file/image_type.h"
 #include "file/input.h"
-#include "image/find.h"
 #include "gltf/document.h"
+#include "gltf/turned_images.h"
+#include "image/textures.h"
+#include "scene/scene.h"
+
+/* ---- the image file of a mesh's normal map or base colour, for the report: normal_map.c ---- */
+
+/* Its pictures, and what a normal map itself says. Nothing else needs it, so nothing that is wrong with it is an error.
+ * Exhausted memory and faults of the system are errors all the same. */
 
 typedef struct nt_normal_map {
 	const unsigned char *bytes;
@@ -25,7 +29,7 @@ typedef struct nt_normal_map {
 } nt_normal_map;
 
 /* Finds and opens it: the first material with one, files inside the document's folder only (of an OBJ as
- * image/find.h has it).
+ * image/textures.h has it).
  *
  *   slot      NT_SLOT_NORMAL, NT_SLOT_CLEARCOAT_NORMAL, which only glTF has, or 0: the base colour, if it has the
  *             texture coordinates of mesh->texcoord_set
@@ -62,5 +66,29 @@ const nt_map *nt_normal_map_named(const nt_scene *scene, const nt_mesh *mesh, en
 
 /* A finding about each image of a glTF that is not to be written whose file cannot be read. */
 nt_status nt_look_for_images(nt_scene *scene, nt_error *error);
+
+/* ---- normal maps of a glTF whose green points down, and height maps in their place: turned_maps.c ---- */
+
+typedef struct nt_turning {
+	nt_flip flip;        /* of those that are normal maps */
+	const bool *images;  /* [image_count] whose green may be turned; NULL: all */
+	size_t image_count;
+	bool heights;        /* grey images are height maps */
+	double height;       /* see nt_heights_to_normals() */
+	uint64_t max_pixels; /* see nt_check_pixels() */
+	unsigned threads;
+} nt_turning;
+
+/*
+ * Makes the images, and has the document refer to them: an image that something else uses, too, gets a copy, and so
+ * does its texture. Each image that is flipped, or cannot be, is a finding.
+ *
+ *   scene   of a glTF that is about to be written, with its document
+ *   turned  receives the images; nt_turned_maps_free() after failure, too
+ *
+ * Returns NT_OK, NT_ERROR_IO, NT_ERROR_MEMORY, NT_ERROR_MODULE or NT_ERROR_LIMIT.
+ */
+nt_status nt_turned_maps_make(nt_scene *scene, const nt_turning *how, nt_turned_images *turned, nt_error *error);
+void nt_turned_maps_free(nt_turned_images *turned);
 
 #endif
