@@ -9,7 +9,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "pipeline/settings.h"
+#include "pipeline/run.h"
 
 typedef struct nt_gate {
 	uint64_t limit; /* bytes */

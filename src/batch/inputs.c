@@ -16,7 +16,7 @@
 #include "file/input.h"
 #include "file/path.h"
 #include "format/format.h"
-#include "pipeline/timer.h"
+#include "pipeline/run.h"
 
 /* A look through one folder and those below. */
 typedef struct walk {

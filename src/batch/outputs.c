@@ -16,7 +16,7 @@
 #include "file/input.h"
 #include "file/path.h"
 #include "format/format.h"
-#include "report/codes.h"
+#include "report/report.h"
 
 nt_status nt_batch_check(nt_batch *batch, const char *const *inputs, size_t count, nt_error *error)
 {

@@ -34,7 +34,7 @@
 
 #include "batch/record.h"
 #include "file/input.h"
-#include "pipeline/settings.h"
+#include "pipeline/run.h"
 
 /* The comparison of files: by size, times and inode, or by size and digest. */
 typedef enum nt_update_by { NT_UPDATE_BY_TIME, NT_UPDATE_BY_CONTENT } nt_update_by;

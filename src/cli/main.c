@@ -22,7 +22,7 @@
 #include "file/input.h"
 #include "file/output.h"
 #include "file/path.h"
-#include "report/codes.h"
+#include "report/report.h"
 
 static void say_usage(const nt_error *error, nt_style style)
 {

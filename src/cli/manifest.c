@@ -16,8 +16,8 @@
 #include "cli/messages.h"
 #include "file/input.h"
 #include "file/path.h"
-#include "report/codes.h"
 #include "report/render/render.h"
+#include "report/report.h"
 #include "scene/values.h"
 
 /* A job that failed for want of memory has a line all the same. */

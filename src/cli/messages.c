@@ -11,7 +11,7 @@
 
 #include "base/structs.h"
 #include "file/input.h"
-#include "report/codes.h"
+#include "report/report.h"
 
 /* So many places of one code are shown without -v; the rest is counted. */
 enum { PLACES_SHOWN = 5 };

@@ -6,7 +6,7 @@
 #include "cli/options.h"
 #include "file/input.h"
 #include "file/path.h"
-#include "report/codes.h"
+#include "report/report.h"
 
 #include <inttypes.h>
 #include <stdio.h>

@@ -9,7 +9,7 @@
 #include "cli/options.h"
 #include "cli/option_table.h"
 #include "file/input.h"
-#include "report/codes.h"
+#include "report/report.h"
 #include "scene/values.h"
 
 #include <fnmatch.h>

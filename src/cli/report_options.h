@@ -6,7 +6,7 @@
 #define NT_CLI_REPORT_OPTIONS_H
 
 #include "cli/options.h"
-#include "pipeline/report_file.h"
+#include "pipeline/run.h"
 
 /* The report of a command. */
 typedef struct nt_report_plan {

@@ -16,7 +16,7 @@
 #include <math.h>
 #include <string.h>
 #include "base/vec.h"
-#include "report/maker/quads.h"
+#include "report/maker/maker.h"
 #include "topology/corners.h"
 
 /* Finite, of unit length (to the Khronos validator's tolerance), off perpendicular by no more than a degree, as

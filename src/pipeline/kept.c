@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "base/parallel.h"
-#include "report/maker/quads.h"
+#include "report/maker/maker.h"
 #include "report/report.h"
 #include "topology/corners.h"
 

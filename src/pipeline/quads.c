@@ -10,7 +10,6 @@
 #include <stdlib.h>
 #include "base/numbers.h"
 #include "report/maker/maker.h"
-#include "report/maker/quads.h"
 #include "topology/corners.h"
 
 /* Whether the tangents that a mesh has are those of its quads and not those of its triangles. */

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Reports to files and folders: see report_file.h. A report is written as any output is, to a temporary file that takes
+ * Reports to files and folders: see run.h. A report is written as any output is, to a temporary file that takes
  * its name at the end, and never over an input.
  */
-#include "pipeline/report_file.h"
+#include "pipeline/run.h"
 
 #include <errno.h>
 #include <fcntl.h>

@@ -16,7 +16,6 @@
 #include "gltf/sidecar.h"
 #include "gltf/verify/verify.h"
 #include "pipeline/stages.h"
-#include "pipeline/timer.h"
 #include "scene/values.h"
 
 /* Shared data of the stages of one run. */

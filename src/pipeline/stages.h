@@ -6,7 +6,7 @@
 #define NT_PIPELINE_STAGES_H
 
 #include "format/format.h"
-#include "pipeline/settings.h"
+#include "pipeline/run.h"
 
 /* Finds the row of who writes `path`, by settings and name; of a stream without one only when the reader is known: PLY
  * for PLY, else GLB. With settings->check: whose conversion is judged; NULL: the input is judged as it is. `reader` is

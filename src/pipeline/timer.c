@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * See timer.h. A thread sleeps until the time is over. A thread that waits for the lock for ever is in a process that
+ * The time of a run. A thread sleeps until the time is over. A thread that waits for the lock for ever is in a process that
  * is ending.
  */
-#include "pipeline/timer.h"
+#include "pipeline/run.h"
 
 #include <errno.h>
 #include <math.h>

@@ -5,7 +5,7 @@
  * geometry. A file of a name that the baseline does not have, renamed or copied, is compared by geometry with all of
  * the baseline: equal positions of another file are the same finding.
  */
-#include "report/baseline.h"
+#include "report/report.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -7,7 +7,6 @@
 #define NT_REPORT_CHECK_H
 
 #include <math.h>
-#include "report/codes.h"
 #include "report/report.h"
 #include "report/surface/surface.h"
 

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The table of findings and the few functions that read it: see codes.h.
+ * The table of findings and the few functions that read it: see report.h.
  *
  * Severities: an error is data that breaks glTF's rules or certainly renders wrong; a warning is worth
  * a look in the DCC tool; an info says what is there (mirroring itself is legitimate). A fact that nobody would ever
  * act on is a number of the mesh and no finding.
  */
-#include "report/codes.h"
+#include "report/report.h"
 
 #include <assert.h>
 #include <string.h>

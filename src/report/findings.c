@@ -14,7 +14,7 @@
 #include <string.h>
 #include "base/hash_index.h"
 #include "base/parallel.h"
-#include "report/baseline.h"
+#include "report/report.h"
 
 /* Counts an occurrence and returns the spot to fill, NULL when there are enough. */
 static nt_spot *count_one(nt_tally *tally, double value)

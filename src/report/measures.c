@@ -17,7 +17,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include "report/maker/quads.h"
+#include "report/maker/maker.h"
 
 /* A triangle's number and how much of the island it is. */
 typedef struct weighed {

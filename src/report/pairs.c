@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Pairs by keys: see pairs.h. Both lists are sorted and gone through at once.
+ * Pairs by keys: see report.h. Both lists are sorted and gone through at once.
  */
-#include "report/pairs.h"
+#include "report/report.h"
 
 #include <stdlib.h>
 #include "base/memory.h"

@@ -13,12 +13,85 @@
 #define NT_REPORT_REPORT_H
 
 #include <math.h>
-#include "report/maker/maker.h"
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
 #include "base/memory.h"
+#include "base/text.h"
 #include "file/path.h"
+#include "report/maker/maker.h"
 #include "report/surface/box.h"
-#include "report/codes.h"
+#include "scene/finding.h"
 #include "scene/scene.h"
+
+/* ---- the table of findings: codes.c ---- */
+
+/* It has one row for each nt_code. It is what --list-codes prints, what man/nmtan-report.5 and data/nmtan-
+ * report.schema.json are checked against, and where every writer of reports takes its sentences from. */
+
+/* Actions for a finding. The greatest comes first: what has to be exported again, all else is made
+ * from. */
+typedef enum nt_advice {
+	NT_ADVICE_LOOK,
+	NT_ADVICE_CONVERT,
+	NT_ADVICE_BAKE,
+	NT_ADVICE_FILE, /* one is missing */
+	NT_ADVICE_EXPORT
+} nt_advice;
+
+typedef struct nt_code_row {
+	const char *name;     /* UV_MIRROR_SEAM: what users write */
+	nt_severity severity; /* unless --severity, or the finding's own numbers, say otherwise */
+	/* The most severe that it gets in a game prop (glTF whose materials use tangents), a scan (no texture
+	 * coordinates) and an OBJ without materials: e, w, i, or - where it is not found there. */
+	char profiles[4];
+	nt_advice advice;
+	const char *repair; /* options with which nmtan repairs it, "--fix" for what that does; NULL: it cannot */
+	/* One sentence without a full stop. {count} is the number of occurrences, {one|many} chooses by
+	 * it, {detail} is the finding's detail; without {detail} a detail that is not empty follows behind
+	 * a colon. */
+	const char *message;
+	const char *meaning; /* what it is and why it matters */
+	const char *remedy;  /* what to do about it; the command follows: nt_remedy_text() */
+	const char *example; /* the smallest input that shows it */
+} nt_code_row;
+
+/* The row of a code; a code that is out of range is our mistake. */
+const nt_code_row *nt_code_info(nt_code code);
+
+/* The severity of a scene's finding: its own, or that of the table. */
+nt_severity nt_finding_severity(const nt_finding *finding);
+
+/* "info", "warning" or "error". */
+const char *nt_severity_name(nt_severity severity);
+bool nt_severity_find(const char *name, nt_severity *severity);
+
+/* "if the map was baked with MikkTSpace": else the command of a finding is wrong; NULL: it is always right. */
+const char *nt_code_condition(nt_code code);
+
+/* Whether --fix mends it; whether it mends tangents that are there. */
+bool nt_code_mends(nt_code code);
+bool nt_code_is_of_kept(nt_code code);
+
+/* Appends a word of a shell: as it is if nothing in it is special, else in quotes. False: no terminal takes it. */
+bool nt_shell_word(const char *text, nt_buffer *out);
+
+/* Appends a command that a shell takes as it stands: "nmtan --fix in.glb in-repaired.glb". given: options of the user,
+ * words of a shell with line ends between them, which the command has too unless `options` say otherwise; NULL: none.
+ * output: "": none; NULL: a name beside the input. "IN OUT" stand for names that a terminal does not take, or for an
+ * input of NULL. */
+void nt_command_text(const char *options, const char *given, const char *input, const char *output, nt_buffer *out);
+
+/* Appends the remedy, and at its end the command with these options; options NULL: there is none here. */
+void nt_remedy_text(nt_code code, const char *options, const char *given, const char *input, nt_buffer *out);
+
+/* Appends the sentence of a finding. detail may be NULL. */
+void nt_code_sentence(nt_code code, size_t count, const char *detail, nt_buffer *out);
+
+/* Appends what --list-codes prints: one row per code, its severity and its meaning. */
+void nt_codes_list(nt_buffer *out);
+
+/* ---- reports ---- */
 
 enum {
 	NT_SPOT_COUNT = 8,       /* places that a finding keeps */
@@ -31,7 +104,7 @@ enum {
 /* The edges of the bins of nt_report_mesh.angle_histogram. */
 extern const double nt_angle_bins[NT_ANGLE_BINS];
 
-/* Earlier findings: baseline.h. */
+/* Earlier findings. */
 typedef struct nt_baseline nt_baseline;
 
 /* An image file's bytes, and its media type. */
@@ -315,5 +388,67 @@ unsigned nt_tangent_faults(const float *tangent, const float *normal);
 
 /* Appends a path as reports show it: see file/path.h. */
 void nt_report_show_path(const nt_report *report, const char *path, nt_buffer *out);
+
+/* ---- things of two versions that are the same, by a key, each once: pairs.c ---- */
+
+/* The key of a thing; 0: it has none. */
+typedef uint64_t (*nt_key_of)(const void *things, size_t index);
+
+/* A thing that has a key, by its number. */
+typedef struct nt_keyed {
+	uint64_t key;
+	uint32_t index;
+} nt_keyed;
+
+/* The things that have keys, ascending, equal ones in their order; the caller frees the list. NULL: out of memory. */
+nt_keyed *nt_list_keys(const void *things, size_t count, nt_key_of key_of, size_t *listed);
+
+/* The partners of new things: an old one of each, UINT32_MAX: none; and whether an old one has a partner. */
+typedef struct nt_pairs {
+	uint32_t *partners;
+	bool *taken;
+} nt_pairs;
+
+/*
+ * Pairs what has no partner yet. Equal keys are paired one by one in their order, in time that many equal ones do not
+ * lengthen, and a much longer old list hardly. pairs->taken NULL: none is.
+ */
+void nt_pair_keys(nt_pairs *pairs, const nt_keyed *old, size_t old_count, const nt_keyed *new, size_t new_count);
+
+/* Pairs things by the first of the keys, the rest by the others. False: out of memory. To be freed in either case. */
+bool nt_pair(nt_pairs *pairs, const void *old, size_t old_count, const void *new, size_t new_count,
+	const nt_key_of keys[2]);
+
+/* Every new thing without a partner. False: out of memory. */
+bool nt_pairs_begin(nt_pairs *pairs, size_t new_count);
+
+void nt_pairs_free(nt_pairs *pairs);
+
+/* ---- baselines, earlier findings of which new ones are told apart: baseline.c ---- */
+
+typedef struct nt_baseline_entry {
+	uint64_t file;                  /* a key of its name as reports show it */
+	uint64_t fingerprint, geometry; /* 0: not known; both of the entry that stands for the file */
+} nt_baseline_entry;
+
+/* Each entry is one finding, but one of each file: two equal ones excuse two. */
+struct nt_baseline {
+	nt_baseline_entry *entries; /* [count] by file */
+	size_t count;
+	nt_keyed *geometries; /* [geometry_count] of entries that have one, ascending */
+	size_t geometry_count;
+};
+
+/*
+ * Reads the findings of a JSON report.
+ *
+ * Returns NT_OK, NT_ERROR_INPUT when the text is no report of nmtan, or NT_ERROR_MEMORY.
+ */
+nt_status nt_baseline_read(nt_baseline *baseline, const char *text, size_t size, nt_error *error);
+
+/* Marks the findings that the baseline has. False: out of memory. */
+bool nt_baseline_apply(const nt_baseline *baseline, nt_report *report);
+
+void nt_baseline_free(nt_baseline *baseline);
 
 #endif

@@ -14,7 +14,6 @@
 #include "base/parallel.h"
 #include "base/vec.h"
 #include "report/maker/maker.h"
-#include "report/maker/quads.h"
 #include "topology/corners.h"
 
 /* Below this a tangent has no length; the tolerance of the Khronos validator for the others. */

@@ -25,8 +25,8 @@
 #include "json_mutator.h"
 #include "mutate.h"
 #include "pipeline/run.h"
-#include "report/baseline.h"
 #include "report/render/render.h"
+#include "report/report.h"
 
 size_t LLVMFuzzerMutate(uint8_t *bytes, size_t size, size_t room);
 int LLVMFuzzerInitialize(int *argc, char ***argv);

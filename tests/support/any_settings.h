@@ -5,7 +5,7 @@
 #ifndef NT_SUPPORT_ANY_SETTINGS_H
 #define NT_SUPPORT_ANY_SETTINGS_H
 
-#include "pipeline/settings.h"
+#include "pipeline/run.h"
 
 /*
  *   input    its name says whether it is glTF, which has options of its own

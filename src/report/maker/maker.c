@@ -7,7 +7,6 @@
 #include "base/angle.h"
 #include "base/numbers.h"
 #include "base/vec.h"
-#include "report/maker/quads.h"
 #include "topology/corners.h"
 
 /* Halves of bytes' steps add up to that, of other tangents less. */

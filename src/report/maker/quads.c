@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "report/maker/quads.h"
+#include "report/maker/maker.h"
 
 #include <math.h>
 #include <string.h>

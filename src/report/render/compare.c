@@ -12,7 +12,7 @@
 #include "base/angle.h"
 #include "base/hash.h"
 #include "base/vec.h"
-#include "report/pairs.h"
+#include "report/report.h"
 
 static const double DEGREES = 57.29577951308232;
 

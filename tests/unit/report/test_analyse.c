@@ -4,7 +4,7 @@
  * options do to findings.
  */
 #include "hand_mesh.h"
-#include "report/baseline.h"
+#include "report/report.h"
 
 #include <math.h>
 

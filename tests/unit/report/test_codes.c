@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "test.h"
-#include "report/codes.h"
+#include "report/report.h"
 
 TEST(every_code_has_a_complete_row_and_is_found_by_its_name)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "report/codes.h"
+#include "report/report.h"
 #include "scene/scene.h"
 #include "test.h"
 
