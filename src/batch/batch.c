@@ -13,7 +13,7 @@
 
 #include "base/memory.h"
 #include "base/parallel.h"
-#include "batch/gate.h"
+#include "batch/inside.h"
 
 /* Shared by the threads of one batch. */
 typedef struct progress {

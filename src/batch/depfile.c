@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Depfiles: see depfile.h. Names are spelled as GNU make's manual ("Rule Syntax", "Using Wildcard Characters") and
+ * Depfiles: see batch.h. Names are spelled as GNU make's manual ("Rule Syntax", "Using Wildcard Characters") and
  * Ninja's depfile lexer both read them: a backslash before a blank, "#" and ":", each backslash before those doubled,
  * and "$$". Characters that only one of them knows (%, * in make) are left as they are. Ninja reads "\#" in a name
  * with one backslash too many, and makes the output again each time; make would lose the rest of the line the other
  * way.
  */
-#include "batch/depfile.h"
+#include "batch/batch.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * A bound of memory: see gate.h. First come, first served, so that small jobs do not keep a large one waiting for ever.
+ * A bound of memory: see inside.h. First come, first served, so that small jobs do not keep a large one waiting for
+ * ever.
  */
-#include "batch/gate.h"
+#include "batch/inside.h"
 
 #include <string.h>
 #include <sys/stat.h>

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Which files a run of many is about: see inputs.h.
+ * Which files a run of many is about: see batch.h.
  */
-#include "batch/inputs.h"
+#include "batch/batch.h"
 
 #include <dirent.h>
 #include <errno.h>

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The file of a record: see record.h.
+ * The file of a record: see inside.h.
  *
  * A process that appends or rewrites locks the file, by a lock of the open file that network file systems know, too.
  * If there are no locks, appending goes on without (O_APPEND is enough on local disks), and nothing is rewritten. A
  * rewritten file is another one: who has waited for the lock of the old one opens it again.
  */
-#include "batch/record.h"
+#include "batch/inside.h"
 
 #include <errno.h>
 #include <fcntl.h>

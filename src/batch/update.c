@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Doing only what is needed: see update.h. A look notes in the trace what it finds, as a run does, so that one function
+ * Doing only what is needed: see batch.h. A look notes in the trace what it finds, as a run does, so that one function
  * writes the lines of both.
  */
-#include "batch/update.h"
+#include "batch/batch.h"
 
 #include <errno.h>
 #include <inttypes.h>
@@ -13,6 +13,7 @@
 #include <sys/stat.h>
 
 #include "base/memory.h"
+#include "batch/inside.h"
 #include "file/input.h"
 #include "file/path.h"
 #include "json/json.h"

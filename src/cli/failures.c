@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Failures in a run of many: see failures.h.
+ * Failures in a run of many: see messages.h.
  */
-#include "cli/failures.h"
+#include "cli/messages.h"
 
 #include <stdlib.h>
 #include <string.h>

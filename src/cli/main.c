@@ -12,11 +12,9 @@
 #include <unistd.h>
 
 #include "base/text.h"
-#include "batch/inputs.h"
+#include "batch/batch.h"
+#include "cli/messages.h"
 #include "cli/options.h"
-#include "cli/own_files.h"
-#include "cli/report_options.h"
-#include "cli/say.h"
 #include "cli/session.h"
 #include "ext/module.h"
 #include "file/input.h"

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The manifest: see manifest.h.
+ * The manifest: see session.h.
  */
-#include "cli/manifest.h"
+#include "cli/session.h"
 
 #include <errno.h>
 #include <fcntl.h>

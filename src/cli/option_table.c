@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The table of options: see option_table.h. It is read by the parser in options.c, and by --help, the completions and
+ * The table of options: see options.h. It is read by the parser in options.c, and by --help, the completions and
  * what a record says of options in option_texts.c.
  */
-#include "cli/option_table.h"
-
 #include "cli/options.h"
+
 
 #define FIELD(name)   offsetof(nt_command, name)
 #define SETTING(name) offsetof(nt_command, settings.name)

@@ -2,7 +2,6 @@
 /*
  * Texts about options: --help, the completions of bash and zsh, and which options shape outputs.
  */
-#include "cli/option_table.h"
 #include "cli/options.h"
 #include "file/input.h"
 #include "file/path.h"

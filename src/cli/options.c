@@ -7,7 +7,6 @@
  * slip of the finger into a wrong file.
  */
 #include "cli/options.h"
-#include "cli/option_table.h"
 #include "file/input.h"
 #include "report/report.h"
 #include "scene/values.h"

@@ -1,15 +1,54 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The options of the command line: one table, from which the parser, --help and the completions come.
- * A new option is a new row in option_table.c and, where it is not one of the pipeline's settings,
- * a field of nt_command.
+ * The options of the command line: one table, from which the parser, --help and the completions come, and what the
+ * words mean: a command, the plan of its report, the files that it writes beside its outputs. A new option is a new
+ * row in option_table.c and, where it is not one of the pipeline's settings, a field of nt_command.
  */
 #ifndef NT_CLI_OPTIONS_H
 #define NT_CLI_OPTIONS_H
 
+#include <stdbool.h>
+#include <stddef.h>
 #include "base/text.h"
-#include "batch/update.h"
+#include "batch/batch.h"
 #include "pipeline/run.h"
+
+/* ---- the table: option_table.c ---- */
+
+typedef enum nt_option_kind {
+	NT_OPTION_HEADING,     /* no option: a line of --help */
+	NT_OPTION_FLAG,        /* bool becomes true */
+	NT_OPTION_SET,         /* int becomes `first` */
+	NT_OPTION_CHOICE,      /* int becomes `first` + the number of the word in `values`; a word that ends in :N there
+	                          has a number 0..most, which the int behind becomes */
+	NT_OPTION_MAYBE_CHOICE,/* the same, or `first` without a word, which follows = and nothing else */
+	NT_OPTION_NUMBER,      /* int becomes 0..most */
+	NT_OPTION_AUTO_NUMBER, /* the same; -1 for the word auto */
+	NT_OPTION_SIZE,        /* uint64_t becomes so many bytes */
+	NT_OPTION_TEXT,        /* const char * becomes the word */
+	NT_OPTION_LIST         /* nt_words gets the word as its last */
+} nt_option_kind;
+
+/* As `first` of a heading: the bytes of outputs depend on the options below it. */
+enum { NT_SHAPES_OUTPUT = 1 };
+
+typedef struct nt_option_row {
+	const char *name;   /* without the dashes */
+	char letter;        /* the short form; 0: none */
+	nt_option_kind kind;
+	const char *values; /* "one|two|three" or a word for the value; NULL: takes no value */
+	int first, most;
+	const char *standard; /* the default, in words; NULL: none or off */
+	const char *help;     /* NULL: a hidden option */
+	size_t offset;        /* of the field in nt_command */
+	bool writes;          /* says what is written, and where: with --check, what a glTF becomes is judged */
+} nt_option_row;
+
+enum { NT_MOST_OPTIONS = 128 };
+extern const nt_option_row nt_option_rows[];
+extern const size_t nt_option_row_count;
+
+/* ---- commands: options.c and option_texts.c ---- */
 
 /* Actions that words ask for. */
 enum nt_action {
@@ -119,5 +158,41 @@ void nt_options_explain(const nt_command *command, nt_buffer *out);
 /* Completion scripts for the two shells. */
 void nt_options_bash(nt_buffer *out);
 void nt_options_zsh(nt_buffer *out);
+
+/* ---- --report and the options beside it: report_options.c ---- */
+
+/* Words become the options of a report, and where it goes. */
+
+/* The report of a command. */
+typedef struct nt_report_plan {
+	bool wanted;
+	nt_report_options options;
+	nt_baseline baseline;
+	nt_shown_paths paths;    /* how reports name files */
+	nt_buffer conversion;    /* options of the conversion that --check judges */
+	nt_buffer given;         /* those of a command that repairs something */
+	nt_buffer folder;        /* where a page will be, absolute */
+	nt_report_target target; /* its path is NULL where nothing is written */
+} nt_report_plan;
+
+/* Reads --ignore, --severity, --min-severity, --max-issues, --path-prefix, --baseline, --report and --report-format.
+ * With --check there is always a report; without --report its text goes to standard output. With --fail-on there is
+ * one to judge by. Returns NT_OK, NT_ERROR_USAGE, or what reading the baseline returned. The plan is to be freed
+ * either way. */
+nt_status nt_report_plan_make(nt_report_plan *plan, const nt_command *command, bool colour,
+	nt_error *error);
+void nt_report_plan_free(nt_report_plan *plan);
+
+/* ---- files that a run writes beside its outputs: own_files.c ---- */
+
+/* A report, a manifest, a depfile, a record. None replaces another one, an output, or what a run reads or writes. */
+
+/* Refuses files that are named twice, also by different names. With a batch (NULL: its jobs are not known yet) it also
+ * refuses one that is an output or an input of a job, has no folder, or with --no-clobber is there already. Returns
+ * NT_OK, NT_ERROR_USAGE, NT_ERROR_IO or NT_ERROR_MEMORY. */
+nt_status nt_own_files_check(const nt_command *command, const nt_batch *batch, bool report_is_folder, nt_error *error);
+
+/* Refuses a file that a run has read or written. Returns NT_OK or NT_ERROR_IO. */
+nt_status nt_own_file_check_trace(const char *path, const nt_trace *trace, nt_error *error);
 
 #endif

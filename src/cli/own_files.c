@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Files beside the outputs: see own_files.h. A file is known by its inode, one that is not there by the folder in which
+ * Files beside the outputs: see options.h. A file is known by its inode, one that is not there by the folder in which
  * it may come to be.
  */
-#include "cli/own_files.h"
+#include "cli/options.h"
 
 #include <inttypes.h>
 #include <string.h>

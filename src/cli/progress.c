@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Progress: see progress.h. On a terminal the line replaces itself, beginning after a second, since a
+ * Progress: see messages.h. On a terminal the line replaces itself, beginning after a second, since a
  * line that flashes by only disturbs. --progress=on without a terminal is for logs: a line for each stage of one file,
  * or one every ten seconds for many. Without threads, stages and ends of files are the clock.
  */
-#include "cli/progress.h"
+#include "cli/messages.h"
 
 #include <pthread.h>
 #include <stdio.h>
@@ -14,7 +14,7 @@
 #include <unistd.h>
 
 #include "base/deadline.h"
-#include "cli/messages.h"
+#include "cli/options.h"
 
 /* A quarter of a second: quick enough for the eye, nothing to the processor. */
 enum { TICK_NANOSECONDS = 250000000, SECONDS_BEFORE_FIRST = 1, SECONDS_PER_LOG_LINE = 10 };

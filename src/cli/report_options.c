@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Words to report options: see report_options.h.
+ * Words to report options: see options.h.
  */
-#include "cli/report_options.h"
+#include "cli/options.h"
 
 #include <stdio.h>
 #include <string.h>

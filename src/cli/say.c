@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Standard error and exit codes: see say.h.
+ * Standard error and exit codes: see messages.h.
  */
-#include "cli/say.h"
+#include "cli/messages.h"
 
 #include <poll.h>
 #include <signal.h>

@@ -15,12 +15,9 @@
 #include <unistd.h>
 #include "base/parallel.h"
 #include "base/text.h"
-#include "batch/depfile.h"
-#include "cli/failures.h"
-#include "cli/manifest.h"
-#include "cli/own_files.h"
-#include "cli/progress.h"
-#include "cli/say.h"
+#include "batch/batch.h"
+#include "cli/messages.h"
+#include "cli/options.h"
 
 /* Sums over the jobs that have ended. */
 typedef struct session {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The time of a run. A thread sleeps until the time is over. A thread that waits for the lock for ever is in a process that
- * is ending.
+ * The time of a run. A thread sleeps until the time is over. A thread that waits for the lock for ever is in a process
+ * that is ending.
  */
 #include "pipeline/run.h"
 

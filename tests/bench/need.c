@@ -4,7 +4,7 @@
  */
 #include <inttypes.h>
 #include <stdio.h>
-#include "batch/gate.h"
+#include "batch/inside.h"
 #include "cli/options.h"
 
 int main(int argc, char **argv)

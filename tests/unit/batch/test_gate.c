@@ -3,7 +3,7 @@
  * A bound that threads share, and guesses from what files say about themselves: the comment in gate.c has their
  * numbers.
  */
-#include "batch/gate.h"
+#include "batch/inside.h"
 #include "folder.h"
 #include "test.h"
 

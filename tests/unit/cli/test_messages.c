@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: MIT */
-#include "cli/say.h"
 #include "cli/messages.h"
 #include "test.h"
 

@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: MIT */
-#include "cli/option_table.h"
 #include "cli/options.h"
 #include "test.h"
 

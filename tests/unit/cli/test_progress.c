@@ -11,7 +11,8 @@
 #include <time.h>
 #include <unistd.h>
 #include "base/deadline.h"
-#include "cli/progress.h"
+#include "cli/messages.h"
+#include "cli/options.h"
 
 /* In place of the C library's; for the tests of this file, the time of day stands. */
 static bool stands;
