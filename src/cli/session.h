@@ -25,7 +25,7 @@ void nt_session_end_exhausted(void);
 
 /* ---- the manifest: manifest.c ---- */
 
-/* What became of each input, for other programs. JSON lines, one for each input, written when it ends; the schema is
+/* It tells other programs what became of each input: JSON lines, one for each, written when it ends; the schema is
  * data/nmtan-manifest.schema.json. */
 
 typedef struct nt_manifest {

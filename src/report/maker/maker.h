@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Who made a mesh's tangents, and on which quads.
+ * Finds the method that made a mesh's tangents, and the quads on which it did.
  */
 #ifndef NT_REPORT_MAKER_MAKER_H
 #define NT_REPORT_MAKER_MAKER_H
