@@ -23,6 +23,7 @@ typedef struct block {
 typedef struct vertex {
 	uint32_t least, most; /* what its representative is between; equal: it is this one */
 	uint32_t number;      /* in the cells; until then, how many corners it has */
+	uint32_t cell;        /* its name; 0: no corners */
 } vertex;
 
 /* The array that is sorted. */
@@ -30,10 +31,10 @@ typedef struct edge_array {
 	const nt_welded_mesh *mesh;
 	const nt_grid *grid;
 	vertex *vertices;        /* [vertex_count] */
-	uint16_t *cell_of;       /* [vertex_count] in the place of the edges, until these are listed */
-	uint16_t names[NT_CELLS]; /* of those cells that have vertices, from 1 on; 0: it has none */
-	uint32_t cell_count;
+	uint32_t cell_count;     /* of those that have vertices, which are named from 1 on */
+	uint32_t used_count;     /* vertices that have corners */
 	nt_cells cells;
+	bool many;               /* all representatives are to be found before the array is sorted */
 	nt_part *parts;          /* [cell_count + 1] by name */
 	uint32_t *edges;         /* [count] 3 * triangle + k, from corner k to the next; of none that is degenerate */
 	uint32_t *keys;          /* [count] their lower ends, in the place of the corners; NULL: not all are known */
@@ -65,38 +66,44 @@ static void count_corners(const nt_welded_mesh *m, vertex *vertices)
 /* If a pivot leaves one of so many vertices open, all of them are found first. */
 enum { MANY = 8 };
 
-/* Makes cells of the vertices that have corners; returns how many these are. `many`: all are to be found first. */
-static uint32_t make_cells(edge_array *e, uint32_t *most_corners, bool *many)
+/* Makes cells of the vertices that have corners. A vertex that is alone in its cell has its first corner. */
+static void make_cells(edge_array *e)
 {
 	const nt_welded_mesh *m = e->mesh;
-	uint32_t count = 0, corner_count = 0;
+	uint16_t names[NT_CELLS] = {0};
+	struct { uint32_t vertices, corners; } counts[NT_CELLS + 1];
+	nt_part next = {.vertex_count = 0};
 	uint64_t sum = 0;
+	counts[0].vertices = 0;
 	for (size_t v = 0; v < m->vertex_count; v++) {
 		const unsigned cell = nt_grid_cell(e->grid, m->positions[m->step * v + e->grid->axis]);
 		const uint32_t corners = e->vertices[v].number;
 		if (corners == 0)
 			continue;
-		if (e->names[cell] == 0) {
-			e->names[cell] = (uint16_t)++e->cell_count;
-			e->parts[e->cell_count] = (nt_part){.vertex_count = 0};
+		if (names[cell] == 0) {
+			names[cell] = (uint16_t)++e->cell_count;
+			counts[e->cell_count].vertices = counts[e->cell_count].corners = 0;
 		}
-		nt_part *part = &e->parts[e->names[cell]];
-		e->cell_of[v] = e->names[cell];
-		part->vertex_count++;
-		part->corner_count += corners;
-		sum += e->vertices[v].most - e->vertices[v].least;
+		const uint32_t name = names[cell];
+		counts[name].vertices++;
+		counts[name].corners += corners;
+		e->vertices[v].cell = name;
 	}
-	*most_corners = 0;
-	for (nt_part *part = e->parts + 1; part <= e->parts + e->cell_count; part++) {
-		*most_corners = nt_most_of(*most_corners, part->corner_count);
-		part->vertices = count;
-		part->corners = corner_count;
-		count += part->vertex_count;
-		corner_count += part->corner_count;
+	for (size_t c = 1; c <= e->cell_count; c++) {
+		next.vertex_count = counts[c].vertices;
+		next.corner_count = counts[c].corners;
+		e->parts[c] = next;
+		next.vertices += next.vertex_count;
+		next.corners += next.corner_count;
+	}
+	e->used_count = next.vertices;
+	for (size_t v = 0; v < m->vertex_count; v++) {
+		vertex *one = &e->vertices[v];
+		one->most = counts[one->cell].vertices > 1 ? one->most : one->least;
+		sum += one->most - one->least;
 	}
 	/* about so many vertices are open at each pivot */
-	*many = MANY * sum / (3 * m->triangle_count) > count;
-	return count;
+	e->many = MANY * sum / (3 * m->triangle_count) > e->used_count;
 }
 
 static void place_vertices(const edge_array *e, nt_cell_vertex *rows)
@@ -107,9 +114,9 @@ static void place_vertices(const edge_array *e, nt_cell_vertex *rows)
 		places[c] = e->parts[c].vertices;
 	for (uint32_t v = 0; v < m->vertex_count; v++) {
 		vertex *one = &e->vertices[v];
-		if (one->number == 0)
+		if (one->cell == 0)
 			continue;
-		const uint32_t number = places[e->cell_of[v]]++;
+		const uint32_t number = places[one->cell]++;
 		memcpy(rows[number].position, nt_welded_position(m, v), sizeof rows->position);
 		rows[number].corners = one->number;
 		one->number = e->cells.order[number] = number;
@@ -129,103 +136,10 @@ static void place_corners(const edge_array *e)
 		const uint32_t *v = nt_vertices_of(m, t, copy);
 		for (unsigned k = 0; k < 3; k++) {
 			const uint32_t corner = (uint32_t)nt_triangle_corner(m->triangles, t, k);
-			corners[places[e->cell_of[v[k]]]++] = (nt_cell_corner){vertices[v[k]].number, corner};
+			corners[places[vertices[v[k]].cell]++] = (nt_cell_corner){vertices[v[k]].number, corner};
 		}
 	}
 }
-
-/* Finds all representatives, cell by cell. If one cannot be found, none is known, since the run may not need it. */
-static void find_all(edge_array *e)
-{
-	nt_cells *c = &e->cells;
-	vertex *const vertices = e->vertices;
-	bool done = true;
-	for (nt_part *cell = e->parts + 1; cell <= e->parts + e->cell_count; cell++) {
-		if (cell->vertex_count == 1) { /* many have one */
-			c->vertices[cell->vertices].corners = NT_CELL_FOUND | c->corners[cell->corners].corner;
-			continue;
-		}
-		for (uint32_t i = cell->vertices, end = i + cell->vertex_count; i < end && done; i++)
-			done = nt_cells_find(c, cell, i);
-	}
-	c->limit = false;
-	for (size_t v = 0; v < e->mesh->vertex_count && done; v++)
-		if (vertices[v].least < vertices[v].most)
-			vertices[v].least = vertices[v].most = nt_cells_found(c, vertices[v].number);
-	e->keys = done ? (uint32_t *)(void *)c->corners : NULL;
-}
-
-/* The one in the middle is the larger lower end of two edges of a triangle, and that of the third is the least. */
-static inline uint32_t middle_of(const uint32_t of[3])
-{
-	return nt_most_of(nt_least_of(of[0], of[1]), nt_least_of(nt_most_of(of[0], of[1]), of[2]));
-}
-
-/* Makes the array of edges. Returns what the largest key is at least. */
-static uint32_t list_edges(edge_array *e)
-{
-	const nt_welded_mesh *m = e->mesh;
-	const vertex *const vertices = e->vertices;
-	uint32_t all_least = 0;
-	e->count = 0;
-	for (uint32_t t = 0; t < m->triangle_count;) {
-		block b = {UINT32_MAX, 0};
-		for (unsigned sound = 0; sound < BLOCK_TRIANGLES && t < m->triangle_count; t++) {
-			uint32_t copy[3], least[3], most[3];
-			const uint32_t *v = nt_vertices_of(m, t, copy);
-			if (nt_welded_is_degenerate(m, t, v))
-				continue;
-			for (int k = 0; k < 3; k++) {
-				least[k] = vertices[v[k]].least;
-				most[k] = vertices[v[k]].most;
-				b.least = nt_least_of(b.least, least[k]);
-			}
-			for (uint32_t k = 0; k < 3; k++)
-				e->edges[e->count + k] = 3 * t + k;
-			for (uint32_t k = 0; e->keys && k < 3; k++)
-				e->keys[e->count + k] = nt_least_of(least[k], least[k < 2 ? k + 1 : 0]);
-			e->count += 3;
-			b.most = nt_most_of(b.most, middle_of(most));
-			all_least = nt_most_of(all_least, middle_of(least));
-			sound++;
-		}
-		if (b.most > 0)
-			e->blocks[(e->count - 1) / BLOCK] = b;
-	}
-	return all_least;
-}
-
-/* Makes the array. False when out of memory. */
-static bool make_array(edge_array *e, uint32_t *least)
-{
-	const nt_welded_mesh *m = e->mesh;
-	uint32_t most_corners;
-	bool many;
-	nt_cell_corner *corners = nt_scratch_alloc(m->scratch, 3 * m->triangle_count, sizeof *corners);
-	const size_t edges = 3 * m->triangle_count, halves = m->vertex_count / 2 + 1;
-	e->edges = nt_scratch_alloc(m->scratch, edges > halves ? edges : halves, sizeof *e->edges);
-	e->cell_of = (uint16_t *)(void *)e->edges;
-	e->vertices = nt_scratch_alloc(m->scratch, m->vertex_count, sizeof *e->vertices);
-	e->blocks = nt_scratch_alloc(m->scratch, m->triangle_count / BLOCK_TRIANGLES + 1, sizeof *e->blocks);
-	e->parts = nt_scratch_alloc(m->scratch, (m->vertex_count < NT_CELLS ? m->vertex_count : NT_CELLS) + 1,
-		sizeof *e->parts);
-	if (!corners || !e->edges || !e->vertices || !e->blocks || !e->parts)
-		return false;
-	count_corners(m, e->vertices);
-	const uint32_t count = make_cells(e, &most_corners, &many);
-	nt_cell_vertex *rows = nt_scratch_alloc(m->scratch, count, sizeof *rows);
-	if (!rows || !nt_cells_make(m->scratch, rows, count, most_corners, &e->cells))
-		return false;
-	e->cells.corners = corners;
-	place_vertices(e, rows);
-	place_corners(e);
-	if (many)
-		find_all(e);
-	*least = list_edges(e);
-	return true;
-}
-
-/* Keys */
 
 static inline void ends_of(const nt_welded_mesh *m, uint32_t edge, uint32_t ends[2])
 {
@@ -243,13 +157,123 @@ static inline block bounds_of(const edge_array *e, size_t place)
 	return (block){nt_least_of(a->least, b->least), nt_least_of(a->most, b->most)};
 }
 
+/* Places vertices and corners in their cells, if they are not there. False when out of memory. */
+static bool place(edge_array *e)
+{
+	const nt_welded_mesh *m = e->mesh;
+	uint32_t most_corners = 0;
+	if (e->cells.corners)
+		return true;
+	for (const nt_part *part = e->parts + 1; part <= e->parts + e->cell_count; part++)
+		most_corners = nt_most_of(most_corners, part->corner_count);
+	nt_cell_corner *corners = nt_scratch_alloc(m->scratch, 3 * m->triangle_count, sizeof *corners);
+	nt_cell_vertex *rows = nt_scratch_alloc(m->scratch, e->used_count, sizeof *rows);
+	if (!corners || !rows || !nt_cells_make(m->scratch, rows, e->used_count, most_corners, &e->cells))
+		return false;
+	e->cells.corners = corners;
+	place_vertices(e, rows);
+	place_corners(e);
+	return true;
+}
+
+/* Finds all representatives, cell by cell. If one cannot be found, keys are not used, since the run may not need it.
+ * False when out of memory. */
+static bool find_all(edge_array *e)
+{
+	nt_cells *c = &e->cells;
+	vertex *const vertices = e->vertices;
+	bool done = true;
+	if (!place(e))
+		return false;
+	for (nt_part *cell = e->parts + 1; cell <= e->parts + e->cell_count; cell++) {
+		if (cell->vertex_count == 1) /* many have one */
+			continue;
+		for (uint32_t i = cell->vertices, end = i + cell->vertex_count; i < end && done; i++)
+			done = nt_cells_find(c, cell, i);
+	}
+	c->limit = false;
+	for (size_t v = 0; v < e->mesh->vertex_count && done; v++)
+		if (vertices[v].least < vertices[v].most)
+			vertices[v].least = vertices[v].most = nt_cells_found(c, vertices[v].number);
+	e->keys = done ? (uint32_t *)(void *)c->corners : NULL;
+	return true;
+}
+
+/* The one in the middle is the larger lower end of two edges of a triangle, and that of the third is the least. */
+static inline uint32_t middle_of(const uint32_t of[3])
+{
+	return nt_most_of(nt_least_of(of[0], of[1]), nt_least_of(nt_most_of(of[0], of[1]), of[2]));
+}
+
+/* Makes the array of edges. Returns what the largest key is at least. */
+static uint32_t list_edges(edge_array *e)
+{
+	const nt_welded_mesh *m = e->mesh;
+	const vertex *const vertices = e->vertices;
+	uint32_t *const edges = e->edges, *const keys = e->keys, all_least = 0;
+	size_t count = 0;
+	for (uint32_t t = 0; t < m->triangle_count;) {
+		block b = {UINT32_MAX, 0};
+		const size_t begin = count;
+		for (; count < begin + BLOCK && t < m->triangle_count; t++) {
+			uint32_t copy[3], least[3], most[3];
+			const uint32_t *v = nt_vertices_of(m, t, copy);
+			if (nt_welded_is_degenerate(m, t, v))
+				continue;
+			for (uint32_t k = 0; k < 3; k++) {
+				least[k] = vertices[v[k]].least;
+				most[k] = vertices[v[k]].most;
+				edges[count + k] = 3 * t + k;
+			}
+			if (keys) {
+				keys[count] = nt_least_of(least[0], least[1]);
+				keys[count + 1] = nt_least_of(least[1], least[2]);
+				keys[count + 2] = nt_least_of(least[2], least[0]);
+			}
+			b.least = nt_least_of(b.least, nt_least_of(nt_least_of(least[0], least[1]), least[2]));
+			b.most = nt_most_of(b.most, middle_of(most));
+			all_least = nt_most_of(all_least, middle_of(least));
+			count += 3;
+		}
+		if (count > begin)
+			e->blocks[begin / BLOCK] = b;
+	}
+	e->count = count;
+	return all_least;
+}
+
+/* Makes the array. False when out of memory.
+ *
+ *   asked   the order may matter, so that all representatives are found first if they are many */
+static bool make_array(edge_array *e, bool asked, uint32_t *least)
+{
+	const nt_welded_mesh *m = e->mesh;
+	e->edges = nt_scratch_alloc(m->scratch, 3 * m->triangle_count, sizeof *e->edges);
+	e->vertices = nt_scratch_alloc(m->scratch, m->vertex_count, sizeof *e->vertices);
+	e->blocks = nt_scratch_alloc(m->scratch, m->triangle_count / BLOCK_TRIANGLES + 1, sizeof *e->blocks);
+	e->parts = nt_scratch_alloc(m->scratch, (m->vertex_count < NT_CELLS ? m->vertex_count : NT_CELLS) + 1,
+		sizeof *e->parts);
+	if (!e->edges || !e->vertices || !e->blocks || !e->parts)
+		return false;
+	count_corners(m, e->vertices);
+	make_cells(e);
+	if (asked && e->many && !find_all(e))
+		return false;
+	*least = list_edges(e);
+	return true;
+}
+
+/* Keys */
+
 /* Finds the representative of a vertex, unless that failed before. */
 static NT_NOINLINE void find(edge_array *e, vertex *v)
 {
 	if (v->least == v->most || e->failed)
 		return;
-	const unsigned cell = nt_grid_cell(e->grid, e->cells.vertices[v->number].position[e->grid->axis]);
-	e->failed = !nt_cells_find(&e->cells, &e->parts[e->names[cell]], v->number);
+	e->failed = !place(e);
+	if (e->failed)
+		return;
+	e->failed = !nt_cells_find(&e->cells, &e->parts[v->cell], v->number);
 	v->least = v->most = nt_cells_found(&e->cells, v->number);
 }
 
@@ -289,14 +313,14 @@ static uint32_t key_of(edge_array *e, size_t place)
 static uint32_t find_largest(edge_array *e, uint32_t least, size_t *run_count)
 {
 	*run_count = 0;
-	for (size_t i = 0; i < e->count && !e->failed; i++) {
-		if (i % BLOCK == 0 && e->blocks[i / BLOCK].most < least) {
-			i += BLOCK - 1;
-			continue;
+	/* the last edges are likely to have it */
+	for (size_t b = (e->count + BLOCK - 1) / BLOCK; b-- > 0;) {
+		const size_t end = e->count < (b + 1) * BLOCK ? e->count : (b + 1) * BLOCK;
+		for (size_t i = b * BLOCK; i < end && e->blocks[b].most >= least && !e->failed; i++) {
+			const uint32_t key = bounds_of(e, i).most < least ? 0 : key_of(e, i);
+			*run_count = key > least ? 1 : *run_count + (key == least);
+			least = nt_most_of(least, key);
 		}
-		const uint32_t key = bounds_of(e, i).most < least ? 0 : key_of(e, i);
-		*run_count = key > least ? 1 : *run_count + (key == least);
-		least = nt_most_of(least, key);
 	}
 	return least;
 }
@@ -498,17 +522,22 @@ static bool pair_both(const nt_welded_mesh *m, uint32_t largest, const uint32_t 
 }
 
 /* Finds the order, and what is paired otherwise by it. Not in line: few triangles would have its large frame. */
-static nmtan_status NT_NOINLINE pair_as_published(const nt_welded_mesh *m, const nt_grid *grid,
+static nmtan_status NT_NOINLINE pair_as_published(const nt_welded_mesh *m, const nt_grid *grid, bool asked,
 	nt_unsorted *unsorted)
 {
 	edge_array e = {.mesh = m, .grid = grid};
 	uint32_t least;
 	size_t count;
-	if (!make_array(&e, &least))
+	if (!make_array(&e, asked, &least))
 		return NMTAN_ERROR_MEMORY;
 	const uint32_t largest = find_largest(&e, least, &count);
 	if (!e.failed && count < NT_LEAST_EDGES)
 		return NMTAN_OK;
+	if (!e.failed && e.many && !asked) {
+		if (!find_all(&e))
+			return NMTAN_ERROR_MEMORY;
+		list_edges(&e);
+	}
 	const bool sorted = !e.failed && sort_largest(&e, largest);
 	unsorted->limit = !sorted && (!e.failed || e.cells.limit);
 	return unsorted->limit || (sorted && pair_both(m, largest, e.edges + e.count - count, count, unsorted))
@@ -522,18 +551,18 @@ nmtan_status nt_find_unsorted(const nt_welded_mesh *mesh, const nt_edge_tail *ta
 	if (mesh->triangle_count == 0 || unsorted->limit)
 		return NMTAN_OK;
 	nt_grid grid;
-	bool matters = true; /* that of few triangles may: to find the order is quicker than to ask once more */
+	nt_edge_answer answer = NT_EDGE_OPEN;
 	nmtan_status status = NMTAN_OK;
 	const bool few = nt_edge_are_few(mesh);
 	if (few && nt_few_edges_are_sorted(mesh, &grid, &unsorted->limit))
 		return NMTAN_OK;
 	const nt_scratch_mark mark = nt_scratch_here(mesh->scratch);
 	if (!few)
-		status = nt_edge_tail_matters(mesh, tail, &grid, &matters, &unsorted->limit);
+		status = nt_edge_tail_matters(mesh, tail, &grid, &answer, &unsorted->limit);
 	nt_scratch_back(mesh->scratch, mark);
-	if (status || !matters)
+	if (status || unsorted->limit || answer == NT_EDGE_NO)
 		return status;
-	status = pair_as_published(mesh, &grid, unsorted);
+	status = pair_as_published(mesh, &grid, answer == NT_EDGE_MAY, unsorted);
 	nt_scratch_back(mesh->scratch, mark);
 	if (!status && unsorted->count > 0) { /* they are still there, in memory that may be the same */
 		const nt_unsorted_edge *edges = unsorted->edges;

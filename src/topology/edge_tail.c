@@ -22,6 +22,9 @@
 /* Triangles at the end that are looked at first, and how many times more the next time. */
 enum { FIRST = 9, MORE = 4 };
 
+/* So few triangles are not looked at again: the order is asked for at once. */
+enum { SMALL = 4096 };
+
 /* Vertices of the last triangles, and triangles with two of them. If there are more, all edges are looked at. */
 enum { MOST_MEMBERS = 120, MOST_NEAR = 1024, MOST_PAIRS = 64 };
 
@@ -460,46 +463,60 @@ static bool may_matter(question *q, uint32_t *unknown)
 	return may;
 }
 
-typedef enum answer { NO, YES, LOOK_AGAIN } answer;
-
-/* Asks whether the order matters; LOOK_AGAIN: at more triangles. False: a limit, or out of memory. */
-static bool ask_members(question *q, answer *result, bool *limit)
+/* The member that is not known whose edges may have the largest lower ends; NOBODY: they are not above `most`. */
+static uint32_t most_reaching(const question *q, uint32_t most)
 {
-	for (;;) {
+	uint32_t member = NOBODY;
+	for (uint32_t i = 1; i <= q->member_count; i++)
+		if (q->reach[i] > most && !is_known(q, i)) {
+			most = q->reach[i];
+			member = i;
+		}
+	return member;
+}
+
+/* Asks whether the order matters; OPEN: more triangles have to be looked at. False: a limit, or out of memory. */
+static bool ask_members(question *q, nt_edge_answer *result, bool *limit)
+{
+	/* all bounds are looked at after 1, 2, 4 and so on were found */
+	for (unsigned batch = 1;; batch *= 2) {
 		const uint32_t least = find_least(q);
 		const bool is_last = q->first_triangle == 0 || least >= q->first;
 		uint32_t unknown = NOBODY;
-		*result = !is_last ? LOOK_AGAIN : may_matter(q, &unknown) ? YES : NO;
-		/* if none of a pair decides, one that may make the least larger, and most */
-		uint32_t most = is_last ? least : q->first - 1;
-		const bool is_open = *result != NO && unknown == NOBODY;
-		for (uint32_t i = 1; i <= q->member_count && is_open; i++)
-			if (!is_known(q, i) && q->reach[i] > most) {
-				most = q->reach[i];
-				unknown = i;
+		*result = !is_last ? NT_EDGE_OPEN : may_matter(q, &unknown) ? NT_EDGE_MAY : NT_EDGE_NO;
+		if (*result == NT_EDGE_NO)
+			return true;
+		/* if none of a pair decides, those that may make the least larger, and most */
+		const bool of_pair = unknown != NOBODY;
+		unsigned found = 0;
+		for (; found < (of_pair ? 1 : batch); found++) {
+			if (!of_pair)
+				unknown = most_reaching(q, is_last ? least : q->first - 1);
+			if (unknown == NOBODY)
+				break;
+			const float *position = nt_welded_position(q->mesh, q->vertices[unknown]);
+			const float coordinate = position[q->tail->grid.axis];
+			const unsigned slot = q->slots[nt_grid_cell(&q->tail->grid, coordinate)];
+			if (!list_slot(q, slot, coordinate, !is_last))
+				return false;
+			if (q->too_many) {
+				*result = NT_EDGE_MAY;
+				return true;
 			}
-		if (unknown == NOBODY)
-			return true;
-		const float *position = nt_welded_position(q->mesh, q->vertices[unknown]);
-		const float coordinate = position[q->tail->grid.axis];
-		const unsigned slot = q->slots[nt_grid_cell(&q->tail->grid, coordinate)];
-		if (!list_slot(q, slot, coordinate, !is_last))
-			return false;
-		if (q->too_many) {
-			*result = YES;
-			return true;
+			if (!find_members(q, slot, limit))
+				return false;
 		}
-		if (!find_members(q, slot, limit))
-			return false;
+		if (found == 0)
+			return true;
 	}
 }
 
 /* Asks with the last triangles, and with more of them, until it is known. */
-static bool ask(question *q, bool noted, answer *result, bool *limit)
+static bool ask(question *q, bool noted, nt_edge_answer *result, bool *limit)
 {
 	const size_t bounds[2] = {0, q->mesh->triangle_count};
 	for (size_t triangles = FIRST;; triangles *= MORE) {
-		*result = YES;
+		*result = NT_EDGE_MAY;
 		const nt_scratch_mark mark = nt_scratch_here(q->mesh->scratch);
 		q->too_many = false;
 		q->are_all_listed = false;
@@ -515,20 +532,20 @@ static bool ask(question *q, bool noted, answer *result, bool *limit)
 			return true;
 		if (!ask_members(q, result, limit))
 			return false;
-		if (*result != LOOK_AGAIN)
+		if (*result != NT_EDGE_OPEN || q->mesh->triangle_count <= SMALL)
 			return true;
 		nt_scratch_back(q->mesh->scratch, mark);
 	}
 }
 
-nmtan_status nt_edge_tail_matters(const nt_welded_mesh *m, const nt_edge_tail *noted, nt_grid *grid, bool *matters,
-	bool *limit)
+nmtan_status nt_edge_tail_matters(const nt_welded_mesh *m, const nt_edge_tail *noted, nt_grid *grid,
+	nt_edge_answer *answer, bool *limit)
 {
 	question q;
 	nt_edge_tail tail;
-	answer result = NO;
 	bool is_noted = noted && noted->notes;
-	*limit = *matters = false;
+	*limit = false;
+	*answer = NT_EDGE_NO;
 	if (is_noted)
 		tail = *noted;
 	if (!is_noted || !tail.is_grid_of_used) {
@@ -544,8 +561,7 @@ nmtan_status nt_edge_tail_matters(const nt_welded_mesh *m, const nt_edge_tail *n
 			m->scratch, m->triangle_count / NT_EDGE_NOTE_LEAST + 2, sizeof *tail.notes);
 	q.mesh = m;
 	q.tail = &tail;
-	if (!tail.notes || (!ask(&q, is_noted, &result, limit) && !*limit))
+	if (!tail.notes || (!ask(&q, is_noted, answer, limit) && !*limit))
 		return NMTAN_ERROR_MEMORY;
-	*matters = !*limit && result != NO;
 	return NMTAN_OK;
 }

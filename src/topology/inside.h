@@ -130,12 +130,15 @@ static inline uint32_t nt_mesh_corner(const nt_welded_mesh *mesh, uint32_t corne
 	return (uint32_t)nt_triangle_corner(mesh->triangles, corner / 3, corner % 3);
 }
 
-/* Whether the order of the last run may matter, of a mesh of LEAST_EDGES triangles or more; `grid` receives that of the
- * vertices that have corners, if it may. Returns NMTAN_OK or NMTAN_ERROR_MEMORY.
+/* Whether the order of the last run matters; of few triangles it is quicker to find out than to ask further. */
+typedef enum nt_edge_answer { NT_EDGE_NO, NT_EDGE_MAY, NT_EDGE_OPEN } nt_edge_answer;
+
+/* Asks whether the order of the last run may matter; `grid` receives that of the vertices that have corners, if it may.
+ * Returns NMTAN_OK or NMTAN_ERROR_MEMORY.
  *
  *   tail    NULL: nothing has been noted */
-nmtan_status nt_edge_tail_matters(const nt_welded_mesh *mesh, const nt_edge_tail *tail, nt_grid *grid, bool *matters,
-	bool *limit);
+nmtan_status nt_edge_tail_matters(const nt_welded_mesh *mesh, const nt_edge_tail *tail, nt_grid *grid,
+	nt_edge_answer *answer, bool *limit);
 
 /* Whether the order of the last run certainly does not matter, or is beyond a limit; for at most NT_EDGE_FEW triangles
  * that are not halves of quads, and no more rows than corners may be. `grid` receives that of the vertices that have

@@ -7,7 +7,7 @@
 #include "topology/edge_sort.h"
 
 /* Vertices in cells of their own, numbered as they come, so that their first corners stand for them. */
-enum { C, A, B, D, MOST = 3 * NT_EDGE_FEW + 16 };
+enum { C, A, B, D, MOST = 4 * NT_EDGE_FEW + 1024 };
 
 static float positions[MOST + 1][3];
 
@@ -160,7 +160,7 @@ TEST(too_many_halvings_are_a_limit)
 
 /* The specification, step by step, on everything: what the search leaves out decides nothing. */
 
-enum { MOST_TRIANGLES = 700, MOST_CORNERS = 3 * MOST_TRIANGLES };
+enum { MOST_TRIANGLES = 4400, MOST_CORNERS = 3 * MOST_TRIANGLES };
 
 typedef struct edge {
 	uint32_t low, high, number; /* representatives; 3 * triangle + k */
@@ -342,7 +342,8 @@ static uint32_t below(uint32_t limit)
 	return (chance >> 8) % limit;
 }
 
-/* How a mesh ends. QUADS: of two halves, one collapsed; SHUFFLED: in no order. */
+/* How a mesh ends. QUADS: of two halves, one collapsed; SHUFFLED: in no order; MANY: doubles, and
+ * behind them more triangles of old vertices than are looked at first, of a mesh that is then looked at again. */
 typedef enum tail_form {
 	PLAIN,
 	OLD_VERTICES,
@@ -352,13 +353,14 @@ typedef enum tail_form {
 	QUADS,
 	THREE_VERTICES,
 	SHUFFLED,
+	MANY,
 	FORMS
 } tail_form;
 
 /* A sheet of cells, most of whose rows of vertices are in one cell of the grid, and a tail. */
 static size_t make_tail(tail_form form, uint32_t *ids, uint32_t *cuts)
 {
-	const uint32_t columns = 1 + below(10), rows = 1 + below(9);
+	const uint32_t columns = form == MANY ? 62 : 1 + below(10), rows = form == MANY ? 34 : 1 + below(9);
 	const bool turned = below(2), lattice = below(2);
 	size_t count = 0;
 	for (uint32_t v = 0; v < MOST; v++) {
@@ -374,14 +376,15 @@ static size_t make_tail(tail_form form, uint32_t *ids, uint32_t *cuts)
 		memcpy(ids + count, form == QUADS ? quad : halves, corners * sizeof *ids);
 		count += corners;
 	}
-	const uint32_t vertices = (columns + 1) * (rows + 1), times = 1 + below(form == COLLAPSED ? 60 : 12);
+	const uint32_t vertices = (columns + 1) * (rows + 1), least = form == MANY ? 12 : 1;
+	const uint32_t times = least + below(form == COLLAPSED ? 60 : 12);
 	uint32_t *tail = ids + count;
 	for (uint32_t i = 0; i < times; i++, tail += 3) {
 		const uint32_t old[3] = {below(vertices), below(vertices), below(vertices)};
 		memcpy(tail, old, sizeof old);
 		if (form == HUB)
 			tail[2] = vertices;
-		if (form == DOUBLES)
+		if (form == DOUBLES || (form == MANY && i < 3))
 			for (uint32_t k = 0; k < 3; k++)
 				tail[k] = i == 0 ? k + vertices - 3 : *(tail - 3 + (below(4) ? k : k * 2 % 3));
 		if (form == COLLAPSED)
@@ -450,7 +453,7 @@ TEST(every_form_of_a_tail_is_as_specified)
 	static nt_unsorted_edge expected[MOST_CORNERS];
 	for (int form = 0; form < FORMS; form++) {
 		size_t shown = 0;
-		for (chance = 0; chance < 600; chance++) {
+		for (chance = 0; chance < (form == MANY ? 30 : 600); chance++) {
 			const uint32_t seed = chance;
 			chance *= 7919;
 			const size_t triangles = make_tail((tail_form)form, ids, cuts);
@@ -462,7 +465,8 @@ TEST(every_form_of_a_tail_is_as_specified)
 			for (size_t e = 0; e < 3 * triangles; e++)
 				last = entry_vertices[e] > last ? entry_vertices[e] : last;
 			/* rows that have corners, some that have none, too many for edge_few.c */
-			const size_t rows[5] = {last + 1, 3 * NT_EDGE_FEW, MOST, last + 1, MOST};
+			const size_t few = form == MANY ? last + 1 : 3 * NT_EDGE_FEW;
+			const size_t rows[5] = {last + 1, few, MOST, last + 1, MOST};
 			for (int i = 0; i < 5; i++) {
 				nt_scratch scratch;
 				nt_scratch_init(&scratch, NULL);
