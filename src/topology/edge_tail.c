@@ -113,17 +113,13 @@ enum { MEMBER_PLACES = 512 };
 typedef struct question {
 	const nt_welded_mesh *mesh;
 	nt_edge_tail *tail;
-	bool too_many, are_all_listed;
-	unsigned times_listed;
+	bool too_many;
 	size_t first_triangle;
 	uint32_t first;              /* the least corner of the last triangles */
 	uint8_t slots[NT_CELLS];     /* of cells */
 	uint32_t slot_count, slot_begins[MOST_MEMBERS + 1];
 	size_t noted_count;          /* triangles */
-	uint32_t *listed;            /* [listed_count] corners in cells that are watched, ascending: 3 * triangle + k */
-	uint8_t *listed_slots;       /* [listed_count] if all slots are listed */
-	size_t listed_count;
-	uint32_t *corners;           /* the same by slot */
+	uint32_t *corners;           /* in watched cells, by slot: 3 * triangle + k, ascending; NULL: not listed */
 	uint32_t member_count, vertices[MOST_MEMBERS + 1];
 	uint8_t firsts[MEMBER_PLACES], next[MOST_MEMBERS + 1]; /* members by the lowest bits of their vertices */
 	uint32_t low[MOST_MEMBERS + 1], high[MOST_MEMBERS + 1]; /* first and last corners */
@@ -238,19 +234,17 @@ static void note_all_members(question *q)
 
 /* Representatives, as far as they are needed */
 
-/* Lists what triangles that are noted have in slot `only`, or in any. False when out of memory. */
-static bool list_corners(question *q, unsigned only, float coordinate)
+/* Lists the corners of all slots, unless they are too many. False when out of memory. */
+static bool list_corners(question *q)
 {
 	const nt_welded_mesh *m = q->mesh;
 	const nt_grid grid = q->tail->grid;
 	const float *const rows = m->positions + grid.axis;
-	/* two cells, so that no rounding matters; if a box is so thin that this is 0, each float has its own cell */
-	const bool any = only == NO_SLOT;
-	const float reach = any ? INFINITY : (grid.high - grid.low) * (2.0f / (float)NT_CELLS);
 	const size_t all = 3 * q->noted_count, enough = m->triangle_count + 3 * NT_EDGE_FEW;
 	const size_t most = all < enough ? all : enough;
-	uint32_t *const listed = nt_scratch_alloc(m->scratch, most + 3, sizeof *listed);
-	uint8_t *const slots = nt_scratch_alloc(m->scratch, any ? most + 3 : 1, 1);
+	uint32_t *const listed = nt_scratch_alloc(m->scratch, 2 * most + 3, sizeof *listed);
+	uint8_t *const slots = nt_scratch_alloc(m->scratch, most + 3, 1);
+	uint32_t at[NO_SLOT + 1] = {0}, sum = 0;
 	size_t count = 0;
 	if (!listed || !slots)
 		return false;
@@ -258,57 +252,25 @@ static bool list_corners(question *q, unsigned only, float coordinate)
 	for (uint32_t t; count <= most && next_noted(&n, &t);) {
 		uint32_t copy[3];
 		const uint32_t *v = nt_vertices_of(m, t, copy);
-		const float at[3] = {rows[m->step * v[0]], rows[m->step * v[1]], rows[m->step * v[2]]};
-		if (!((fabsf(at[0] - coordinate) <= reach) | (fabsf(at[1] - coordinate) <= reach) |
-			(fabsf(at[2] - coordinate) <= reach)))
-			continue;
 		for (uint32_t k = 0; k < 3; k++) {
-			const uint8_t slot = q->slots[nt_grid_cell(&grid, at[k])];
+			const uint8_t slot = q->slots[nt_grid_cell(&grid, rows[m->step * v[k]])];
 			listed[count] = 3 * t + k;
-			slots[any ? count : 0] = slot;
-			count += any ? slot != NO_SLOT : slot == only;
+			slots[count] = slot;
+			count += slot != NO_SLOT;
+			at[slot]++;
 		}
 	}
-	q->listed = listed;
-	q->listed_slots = slots;
-	q->listed_count = count;
 	q->too_many = count > most;
-	return true;
-}
-
-/* Sorts what is listed by slot. False when out of memory. */
-static bool sort_by_slot(question *q)
-{
-	const size_t count = q->listed_count;
-	uint32_t at[MOST_MEMBERS + 1] = {0}, sum = 0;
-	q->corners = nt_scratch_alloc(q->mesh->scratch, count, sizeof *q->corners);
-	for (size_t i = 0; i < count; i++)
-		at[q->listed_slots[i]]++;
+	if (q->too_many)
+		return true;
 	for (uint32_t slot = 0; slot <= q->slot_count; slot++) {
 		q->slot_begins[slot] = sum;
 		sum += at[slot];
 		at[slot] = q->slot_begins[slot];
 	}
-	for (size_t i = 0; q->corners && i < count; i++)
-		q->corners[at[q->listed_slots[i]]++] = q->listed[i];
-	return q->corners;
-}
-
-/* Lists the corners of a slot, if they are not, or those of all slots if several will be asked for. False when out of
- * memory. */
-static bool list_slot(question *q, unsigned slot, float coordinate, bool several)
-{
-	enum { ALONE = 2 };
-	if (q->are_all_listed)
-		return true;
-	q->are_all_listed = several || ++q->times_listed > ALONE;
-	if (!list_corners(q, q->are_all_listed ? NO_SLOT : slot, coordinate))
-		return false;
-	if (q->are_all_listed && !q->too_many)
-		return sort_by_slot(q);
-	q->corners = q->listed;
-	q->slot_begins[slot] = 0;
-	q->slot_begins[slot + 1] = (uint32_t)q->listed_count;
+	q->corners = listed + count;
+	for (size_t i = 0; i < count; i++)
+		q->corners[at[slots[i]]++] = listed[i];
 	return true;
 }
 
@@ -495,9 +457,8 @@ static bool ask_members(question *q, nt_edge_answer *result, bool *limit)
 			if (unknown == NOBODY)
 				break;
 			const float *position = nt_welded_position(q->mesh, q->vertices[unknown]);
-			const float coordinate = position[q->tail->grid.axis];
-			const unsigned slot = q->slots[nt_grid_cell(&q->tail->grid, coordinate)];
-			if (!list_slot(q, slot, coordinate, !is_last))
+			const unsigned slot = q->slots[nt_grid_cell(&q->tail->grid, position[q->tail->grid.axis])];
+			if (!q->corners && !list_corners(q))
 				return false;
 			if (q->too_many) {
 				*result = NT_EDGE_MAY;
@@ -519,8 +480,7 @@ static bool ask(question *q, bool noted, nt_edge_answer *result, bool *limit)
 		*result = NT_EDGE_MAY;
 		const nt_scratch_mark mark = nt_scratch_here(q->mesh->scratch);
 		q->too_many = false;
-		q->are_all_listed = false;
-		q->times_listed = 0;
+		q->corners = NULL;
 		if (!take_last(q, triangles))
 			return true;
 		if (triangles > FIRST || !noted) {
