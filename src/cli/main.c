@@ -16,6 +16,7 @@
 #include "cli/messages.h"
 #include "cli/options.h"
 #include "cli/session.h"
+#include "ext/linked.h"
 #include "ext/module.h"
 #include "file/input.h"
 #include "file/output.h"

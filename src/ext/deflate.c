@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "ext/deflate.h"
+#include "ext/linked.h"
 
 #include <libdeflate.h>
 

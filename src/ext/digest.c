@@ -5,7 +5,7 @@
  * Why this one: copying 200 MB takes 52 ms, so the digest has to come at the speed of
  * memory, and users can check it with a program that every distribution has.
  */
-#include "ext/digest.h"
+#include "ext/linked.h"
 
 #include <stdio.h>
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The foreign libraries in the tool itself: see module.h.
+ * The foreign libraries in the tool itself: see linked.h.
  */
-#include "ext/module.h"
+#include "ext/linked.h"
 
 #include <stdio.h> /* before jpeglib.h, which does not include it */
 #include <jpeglib.h>

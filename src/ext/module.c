@@ -18,7 +18,6 @@
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
-#include "ext/reserve.h"
 #include "ext/tables.h"
 
 /* The folder of installed modules; NULL if the tool is not installed. */

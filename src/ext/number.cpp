@@ -2,7 +2,7 @@
 //
 // fast_float behind one C function, std::to_chars behind another. fast_float takes no leading '+', which
 // OBJ and PLY files contain.
-#include "ext/number.h"
+#include "ext/linked.h"
 
 #include <charconv>
 #include <cmath>

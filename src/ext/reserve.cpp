@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 //
-// The operators new and delete of the whole program: see reserve.h. They are the program's, not a module's, so that
+// The operators new and delete of the whole program: see module.h. They are the program's, not a module's, so that
 // all C++ libraries use them, in whatever order modules are opened. The program itself has no C++ library: what
 // takes one is asked of the module that brings it.
 //
 // The block is a stack of pieces that is empty again when all of them are freed: what is taken from it is needed
 // shortly, by one call into a library that will be reported as failed.
-#include "ext/reserve.h"
+#include "ext/module.h"
 
 #include <atomic>
 #include <csignal>

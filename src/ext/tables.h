@@ -9,8 +9,8 @@
 #include "base/text.h"
 #include "ext/draco.h"
 #include "ext/meshopt.h"
+#include "ext/module.h"
 #include "ext/openmesh.h"
-#include "ext/reserve.h"
 #include "ext/tinygltf.h"
 
 #ifdef __cplusplus

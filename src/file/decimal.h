@@ -20,7 +20,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 #include <string.h>
-#include "ext/number.h"
+#include "ext/linked.h"
 
 /* Eight characters, the first in the low byte. */
 static inline uint64_t nt_load8(const char *p)

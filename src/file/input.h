@@ -12,7 +12,7 @@
 #include <sys/stat.h>
 #include "base/hash_index.h"
 #include "base/text.h"
-#include "ext/digest.h"
+#include "ext/linked.h"
 
 /* ---- looking for files: lookup.c ---- */
 

@@ -18,7 +18,7 @@
 #include <string.h>
 #include <unistd.h>
 #include "base/memory.h"
-#include "ext/reserve.h"
+#include "ext/module.h"
 #include "file/input.h"
 
 nt_status nt_output_create(nt_output **output, const nt_output_options *options, nt_error *error)

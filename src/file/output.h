@@ -109,7 +109,7 @@ bool nt_output_has_staging(const nt_output *output);
 /* By which name in its folder the main file refers to a settled sidecar. */
 const char *nt_sink_name(const nt_sink *sink, bool staging);
 
-/* The ownership record of a settled sidecar: the digest (ext/digest.h) of its bytes, NULL if it is not ours, and the
+/* The ownership record of a settled sidecar: the digest (ext/linked.h) of its bytes, NULL if it is not ours, and the
  * digest of the file that it replaces, NULL if there is none. */
 const char *nt_sink_digest(const nt_sink *sink);
 const char *nt_sink_digest_before(const nt_sink *sink);

@@ -10,7 +10,6 @@
 #include "gltf/create/create.h"
 #include "gltf/document.h"
 #include "gltf/edit/edit.h"
-#include "gltf/edit/pool_edit.h"
 #include "gltf/load.h"
 #include "obj/read.h"
 #include "ply/ply.h"

@@ -7,7 +7,7 @@
 
 #include "file/input.h"
 #include "gltf/document.h"
-#include "gltf/turned_images.h"
+#include "gltf/edit/edit.h"
 #include "image/textures.h"
 #include "scene/scene.h"
 

@@ -9,7 +9,7 @@
 #include <string.h>
 #include "file/path.h"
 #include "gltf/document.h"
-#include "gltf/edit/images.h"
+#include "gltf/edit/edit.h"
 #include "image/image.h"
 #include "image/textures.h"
 

@@ -10,7 +10,6 @@
 #include <string.h>
 #include "file/output.h"
 #include "file/path.h"
-#include "gltf/glb.h"
 
 bool nt_gltf_recognise(const unsigned char *bytes, size_t size)
 {

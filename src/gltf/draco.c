@@ -4,7 +4,7 @@
  * block is decoded when the primitive is loaded, or before that on several threads, and the accessors that it fills get
  * their elements from it: their own count gives way to what was decoded, as the extension says.
  */
-#include "gltf/draco.h"
+#include "gltf/load.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -12,7 +12,6 @@
 
 #include <stdlib.h>
 #include <string.h>
-#include "gltf/draco.h"
 #include "gltf/document.h"
 
 static void flip_texcoords(nt_mesh *mesh)

@@ -9,7 +9,7 @@
  */
 #include <stdlib.h>
 #include "gltf/document.h"
-#include "gltf/draco.h"
+#include "gltf/load.h"
 #include "gltf/vertex_pools.h"
 #include "scene/values.h"
 

@@ -6,7 +6,7 @@
  * first one has a meaning. When writing, sizes are known before the first byte, so that everything streams; each
  * chunk's declared length includes its padding, as the specification asks.
  */
-#include "gltf/glb.h"
+#include "gltf/document.h"
 
 #include <string.h>
 

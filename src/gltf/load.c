@@ -12,7 +12,6 @@
 #include <string.h>
 #include "base/parallel.h"
 #include "gltf/document.h"
-#include "gltf/draco.h"
 #include "gltf/quantize.h"
 #include "scene/values.h"
 

@@ -18,7 +18,6 @@
 #include "file/input.h"
 #include "file/path.h"
 #include "gltf/document.h"
-#include "gltf/draco.h"
 
 /* How many elements an accessor claims; where that cannot be said, enough for a triangle, so that loading
  * meets the fault and says it. */

@@ -1,14 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Records of sidecars: see sidecar.h. A previous document is somebody's text: a record counts only for a
+ * Records of sidecars: see document.h. A previous document is somebody's text: a record counts only for a
  * plain name in the document's folder, and output sets compare the digest with the file's bytes.
  */
-#include "gltf/sidecar.h"
+#include "gltf/document.h"
 
 #include <string.h>
 #include "base/memory.h"
 #include "file/path.h"
-#include "gltf/glb.h"
 
 static const char key_digest[] = "nmtan:xxh128", key_before[] = "nmtan:replaces";
 

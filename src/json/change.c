@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include "base/memory.h"
-#include "ext/number.h"
+#include "ext/linked.h"
 #include "json/tree.h"
 
 /* Integers below it are in the value itself. */

@@ -11,7 +11,7 @@
 #include <stddef.h>
 #include <stdlib.h>
 #include "base/text.h"
-#include "ext/number.h"
+#include "ext/linked.h"
 #include "json/tree.h"
 
 /* NULs behind the text: it ends for every loop, also where keys are compared in words of four bytes. */

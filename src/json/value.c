@@ -3,7 +3,7 @@
  * Looking into documents. Numbers are read from their spelling each time they are asked for.
  */
 #include <math.h>
-#include "ext/number.h"
+#include "ext/linked.h"
 #include "json/tree.h"
 
 nt_json_value *nt_json_root(nt_json *document)

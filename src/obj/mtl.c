@@ -21,7 +21,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <strings.h>
-#include "ext/number.h"
+#include "ext/linked.h"
 
 /* Numbers that agree but for being rounded in the text. */
 static const float SAME_NUMBER = 0.01f;

@@ -13,7 +13,7 @@
 #include "file/input.h"
 #include "format/format.h"
 #include "format/maps.h"
-#include "gltf/sidecar.h"
+#include "gltf/document.h"
 #include "gltf/verify/verify.h"
 #include "pipeline/stages.h"
 #include "scene/values.h"

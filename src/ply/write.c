@@ -20,7 +20,7 @@
 #include <stdlib.h>
 #include "base/hash_index.h"
 #include "base/vec.h"
-#include "ext/number.h"
+#include "ext/linked.h"
 #include "ply/parts.h"
 
 enum { DRAIN_BYTES = 64 * 1024, MOST_VALUE = NT_FLOAT_TEXT + 1 };

@@ -147,7 +147,7 @@ typedef struct nt_format_options {
 	/* when it is written */
 	nt_format format;   /* of the output */
 	const char *path;   /* of the output, "-" for standard output */
-	const struct nt_turned_images *turned; /* of a glTF: gltf/turned_images.h; NULL: none */
+	const struct nt_turned_images *turned; /* of a glTF: gltf/edit/edit.h; NULL: none */
 	const struct nt_textures *textures; /* of a new document's materials: image/textures.h; NULL: none */
 	const struct nt_texture_file *texture_file; /* of a PLY: scene/scene.h; NULL: none */
 } nt_format_options;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// What the program asks of the C++ library (reserve.h); each module with C++ has it.
+// What the program asks of the C++ library (module.h); each module with C++ has it.
 #include "ext/modules/guard.hpp"
 
 #include <exception>

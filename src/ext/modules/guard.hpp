@@ -3,7 +3,7 @@
 // The door of every C++ wrapper. A wrapper's entry runs its body inside guard(), so that nothing is
 // thrown past it: exhausted memory becomes NT_ERROR_MEMORY, everything else, which would be a
 // mistake of ours or of the library behind the door, NT_ERROR_INTERNAL with the exception's words.
-// Memory that runs out is not always thrown (see reserve.h), so the status may be NT_ERROR_MEMORY though the body
+// Memory that runs out is not always thrown (see module.h), so the status may be NT_ERROR_MEMORY though the body
 // came to its end: what it has made by then is the caller's to free.
 #ifndef NT_EXT_MODULES_GUARD_HPP
 #define NT_EXT_MODULES_GUARD_HPP
@@ -12,7 +12,7 @@
 #include <new>
 #include <utility>
 #include "base/text.h"
-#include "ext/reserve.h"
+#include "ext/module.h"
 
 namespace nt {
 

@@ -6,7 +6,7 @@
 // parser take numbers beyond double, which extras may have: it gets zeros. And 8.0 is no integer to it, though it is
 // one to JSON and glTF: it gets 8.
 #include "ext/modules/tinygltf_text.hpp"
-#include "ext/number.h"
+#include "ext/linked.h"
 
 #include <algorithm>
 #include <cmath>

@@ -10,7 +10,7 @@
 
 #include <string.h>
 #include "base/text.h"
-#include "ext/number.h"
+#include "ext/linked.h"
 
 static const char *const root_members[] = {"accessors", "asset", "bufferViews", "extensionsRequired", "extensionsUsed",
 	"images", "materials", "meshes", "nodes", "samplers", "scene", "scenes", "textures", "buffers"};

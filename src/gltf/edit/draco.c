@@ -9,12 +9,11 @@
  * outside of the block would no longer fit), where primitives share accessors but not all else, or where it is not
  * wanted, the primitive is written plain.
  */
-#include "gltf/edit/draco.h"
+#include "gltf/edit/pool_edit.h"
 
 #include <stdlib.h>
 #include <string.h>
 #include "gltf/document.h"
-#include "gltf/edit/pool_edit.h"
 #include "gltf/quantize.h"
 
 /* Whether a user has tangents to be written and is compressed. */

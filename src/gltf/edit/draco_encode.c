@@ -3,13 +3,12 @@
  * Draco blocks, each encoded by one thread. The largest come first, so that no thread is left alone with one of them at
  * the end; and of those that take much memory only so many are encoded at once as there is room for.
  */
-#include "gltf/edit/draco.h"
+#include "gltf/edit/pool_edit.h"
 
 #include <stdlib.h>
 #include <string.h>
 #include "base/memory.h"
 #include "base/parallel.h"
-#include "gltf/edit/pool_edit.h"
 
 /* Memory that Draco takes for each corner and vertex of ordinary meshes: see batch/need.h. */
 enum { ELEMENT_BYTES = 100 };

@@ -10,7 +10,7 @@
  * The elements leave the buffers. Views keep their numbers: one takes the block, others that are empty then
  * share bytes with it.
  */
-#include "gltf/edit/draco.h"
+#include "gltf/edit/pool_edit.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -20,8 +20,8 @@
 #include <stdio.h>
 #include <string.h>
 #include "gltf/document.h"
+#include "gltf/edit/pool_edit.h"
 #include "gltf/load.h"
-#include "gltf/edit/draco.h"
 
 typedef struct planning {
 	nt_scene *scene;

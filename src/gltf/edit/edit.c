@@ -13,12 +13,10 @@
 #include <stdlib.h>
 #include <string.h>
 #include "base/parallel.h"
+#include "gltf/bytes/bytes.h"
 #include "gltf/document.h"
 #include "gltf/edit/pool_edit.h"
-#include "gltf/edit/draco.h"
-#include "gltf/bytes/bytes.h"
 #include "gltf/quantize.h"
-#include "gltf/turned_images.h"
 
 /* Data for every pool's edit. */
 typedef struct editing {

@@ -4,7 +4,7 @@
  * to move into the output or beside it: where that is wanted, or where the output's folder does not have them. An image
  * that cannot be read is a finding and keeps its name, since clients refuse names that leave a folder.
  */
-#include "gltf/edit/images.h"
+#include "gltf/edit/edit.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -15,7 +15,6 @@
 #include "base/hash_index.h"
 #include "file/input.h"
 #include "file/path.h"
-#include "gltf/turned_images.h"
 
 nt_images nt_gltf_images_choice(const nt_write_options *options, const nt_gltf *document)
 {

@@ -2,7 +2,7 @@
 /*
  * External files of a document, named from another folder.
  */
-#include "gltf/edit/images.h"
+#include "gltf/edit/edit.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -12,6 +12,7 @@
  * unpacked. Two vertices have the same if 128 bits of keyed hashes are equal: to compare them themselves, all targets
  * would have to be there at once.
  */
+#include "gltf/edit/edit.h"
 #include "gltf/edit/pool_edit.h"
 
 #include <stdlib.h>

@@ -7,7 +7,7 @@
  */
 #include "gltf/edit/edit.h"
 
-#include "gltf/draco.h"
+#include "gltf/load.h"
 #include "gltf/vertex_pools.h"
 
 /* Whether a mesh will be loaded: to be solved, or only to be checked, or for others. */

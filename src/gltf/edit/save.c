@@ -18,8 +18,7 @@
 #include <string.h>
 #include "file/path.h"
 #include "gltf/document.h"
-#include "gltf/edit/images.h"
-#include "gltf/sidecar.h"
+#include "gltf/edit/edit.h"
 
 /* An edited document on its way into files. */
 typedef struct writing {

@@ -17,7 +17,7 @@
 #include <string.h>
 #include "base/hash_index.h"
 #include "gltf/document.h"
-#include "gltf/draco.h"
+#include "gltf/load.h"
 #include "scene/values.h"
 
 /* Something that vertices have. */

@@ -13,7 +13,6 @@
 #include <string.h>
 #include "base/hash.h"
 #include "base/vec.h"
-#include "gltf/draco.h"
 #include "gltf/load.h"
 
 /* A mesh that was to be encoded, in the source's order of vertices, copies behind them, and what was decoded. */

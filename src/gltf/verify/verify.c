@@ -13,7 +13,6 @@
 #include "ext/tinygltf.h"
 #include "file/input.h"
 #include "file/path.h"
-#include "gltf/draco.h"
 #include "gltf/load.h"
 #include "gltf/quantize.h"
 #include "scene/values.h"

@@ -13,7 +13,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include "ext/deflate.h"
+#include "ext/linked.h"
 
 enum { POSITION_CODES = 65535, TEXCOORD_CODES = (1 << 18) - 1, DIRECTION_CODES = 2047 };
 

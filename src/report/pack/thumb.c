@@ -7,7 +7,7 @@
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
-#include "ext/deflate.h"
+#include "ext/linked.h"
 #include "report/pack/pack.h"
 
 enum { WIDTH = NT_THUMB_WIDTH, HEIGHT = NT_THUMB_HEIGHT, MARGIN = 4 };

@@ -2,7 +2,7 @@
 /*
  * Digests: the values are those of xxhsum -H2 (xxHash 0.8.1).
  */
-#include "ext/digest.h"
+#include "ext/linked.h"
 #include "fail_alloc.h"
 #include "test.h"
 

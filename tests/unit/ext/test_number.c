@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "ext/number.h"
+#include "ext/linked.h"
 #include "test.h"
 
 #include <float.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "ext/draco.h"
-#include "gltf/draco.h"
+#include "gltf/load.h"
 #include "test.h"
 
 /* w is -1 or 1 in every file, and bytes of 1 say so to every decoder. */

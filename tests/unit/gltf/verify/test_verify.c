@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 #include "gltf/create/create.h"
-#include "gltf/draco.h"
 #include "gltf/edit/edit.h"
 #include "gltf/load.h"
 #include "gltf/verify/verify.h"
