@@ -64,8 +64,8 @@ PROGRAM_LDFLAGS := $(NT_LDFLAGS) $(if $(filter sanitize,$(config)),-no-pie)
 TOOL_LIBS := -Wl,-Bstatic -ljpeg -ldeflate -Wl,-Bdynamic -lm -ldl
 
 # The compute library: no files, no C++.
-core_src := src/base/words.c src/base/deadline.c src/base/pages.c src/base/parallel.c src/base/pool.c \
-	src/base/cpu.c src/base/scratch.c src/base/struct_bytes.c src/base/largest.c src/base/counts.c src/base/hash.c \
+core_src := src/base/structs.c src/base/deadline.c src/base/pages.c src/base/parallel.c src/base/pool.c \
+	src/base/cpu.c src/base/scratch.c src/base/largest.c src/base/hash.c \
 	$(foreach room,topology tangent tangent/fast tangent/sums api,$(wildcard src/$(room)/*.c))
 tool_src := $(filter-out $(core_src) src/cli/main.c src/bindings/% src/ext/modules/%,$(wildcard src/*/*.c src/*/*/*.c)) \
 	$(wildcard src/ext/*.cpp)
@@ -118,7 +118,7 @@ $(module_so): $(B)/nmtan-%.so: $(module_obj) $(B)/libmodule.a
 
 # The part of the tool that modules use; all of it without a state, but for the key of hashes, which each makes for
 # itself, and deadlines, of which they have none.
-$(B)/libmodule.a: $(call objects,src/base/error.c src/base/utf8.c src/base/hash.c src/base/deadline.c src/base/pages.c \
+$(B)/libmodule.a: $(call objects,src/base/text.c src/base/hash.c src/base/deadline.c src/base/pages.c \
 		src/ext/number.cpp src/ext/codec/pixels.c src/ext/modules/cxx.cpp)
 	rm -f $@ && $(AR) qcsD $@ $^
 

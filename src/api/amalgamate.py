@@ -24,7 +24,7 @@ KERNEL_PLACE = 'src/tangent/fast/kernel_baseline.c'  # among the sources
 KERNELS = ['src/tangent/fast/kernel.h', 'src/tangent/sums/kernel.h']
 
 # Files whose functions take no time in a solve: the definition, threads, and what few meshes need.
-COLD = re.compile(r'src/(base/(?!hash|words|scratch|counts|largest)|tangent/(frames|mikktspace|sums/hard)|topology/(orientation|plain)|api/(self|split|vertices))')
+COLD = re.compile(r'src/(base/(?!hash|structs|scratch|largest)|tangent/(frames|mikktspace|sums/hard)|topology/(orientation|plain)|api/(self|split|vertices))')
 
 # Files that take time in a solve and gain by -O3, as in Makefile. The others are compiled at -O2.
 HOT = re.compile(r'src/(base/largest|topology/(adjacency|edge_sort|weld))')

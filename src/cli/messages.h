@@ -110,7 +110,7 @@ int nt_exit_code(nt_status status);
 /* The worse of two exit codes, in the order 4, 2, 3, 5, 7, 1, 6, 0. */
 int nt_exit_worse(int a, int b);
 
-/* ---- failures of a run of many: failures.c ---- */
+/* ---- failures of a run of many: say.c ---- */
 
 /* They are grouped by reason: ten thousand files that fail for one reason are one line. */
 

@@ -32,7 +32,7 @@ char *nt_write_float(char *text, float value);
 char *nt_write_json_float(char *text, float value);
 char *nt_write_json_double(char *text, double value);
 
-/* ---- digests of bytes that come piece by piece, by xxHash: digest.c ---- */
+/* ---- digests of bytes that come piece by piece, by xxHash ---- */
 
 /* XXH3 with 128 bits, as `xxhsum -H2` prints it. It tells files apart that differ by accident or by another run; it is
  * no proof against somebody who wants two files to have the same. */
@@ -53,14 +53,14 @@ void nt_digest_add(nt_digest *digest, const void *bytes, size_t size);
 /* The digest of all bytes so far, as lower-case hexadecimal digits. */
 void nt_digest_text(const nt_digest *digest, char text[NT_DIGEST_TEXT]);
 
-/* ---- Deflate without a header, by libdeflate: deflate.c ---- */
+/* ---- Deflate without a header, by libdeflate ---- */
 
 /* A browser's DecompressionStream("deflate-raw") reads it. */
 
 /* Appends `size` bytes, compressed; out->failed tells of exhausted memory. */
 void nt_deflate(const void *bytes, size_t size, nt_buffer *out);
 
-/* ---- which they are: linked.c ---- */
+/* ---- which they are ---- */
 
 /* A foreign library that is in the tool itself, and in no module. licences.sh collects their licences, which are
  * installed with it. */

@@ -14,7 +14,7 @@
 #include "base/text.h"
 #include "ext/linked.h"
 
-/* ---- looking for files: lookup.c ---- */
+/* ---- looking for files: trace.c ---- */
 
 /* If a file is missing, a reader may go on; if the system cannot tell, that is an error and never counts as missing. */
 
@@ -67,7 +67,7 @@ typedef struct nt_file {
 	size_t size;
 	bool mapped; /* else malloc'ed, unless it is borrowed */
 	bool borrowed;
-	int watch;   /* of a mapped file: see watch.h */
+	int watch;   /* of a mapped file: see nt_watch_begin() */
 	int fd;      /* of a mapped file, -1 otherwise */
 	uint64_t device, inode; /* which file it is; 0, 0 for standard input */
 } nt_file;
@@ -260,7 +260,7 @@ const char *nt_image_media_type(nt_image_type type);
 /* The glTF extension through which a texture refers to such an image; NULL: the core does. */
 const char *nt_image_extension(nt_image_type type);
 
-/* image_size.c. Width and height of a PNG, JPEG, WebP, TGA, BMP, PSD, HDR or TIFF, as its header says; false, and both
+/* Width and height of a PNG, JPEG, WebP, TGA, BMP, PSD, HDR or TIFF, as its header says; false, and both
  * 0, for other types, damaged headers and images without pixels. */
 bool nt_image_size(const unsigned char *bytes, size_t size, uint32_t pixels[2]);
 

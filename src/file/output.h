@@ -162,7 +162,7 @@ void nt_output_catch_exhaustion(void (*end)(void));
  * happened to it, in a signal handler. Any other fault ends the process as before. */
 void nt_output_catch_faults(void (*end)(const char *path, const char *change));
 
-/* ---- Base64 (RFC 4648): base64.c ---- */
+/* ---- Base64 (RFC 4648): sink.c ---- */
 
 /* Into a sink, piece by piece, for data URIs that are larger than one would like to hold in memory, and small ones into
  * memory. */

@@ -107,7 +107,7 @@ typedef enum nt_alpha_mode {
 /* The number of the only channel of an image. */
 nt_alpha_mode nt_alpha_of(const nt_pixels *pixels);
 
-/* ---- height maps to tangent-space normal maps, as glTF has them (green up): heights.c ---- */
+/* ---- height maps to tangent-space normal maps, as glTF has them (green up): image.c ---- */
 
 /*
  * Makes the normals of a surface. With h from 0 (black) to 1 (white), x to the right and y down in pixels, and
@@ -164,7 +164,7 @@ nt_status nt_examine_image(const unsigned char *bytes, size_t size, nt_normal_fa
  * NT_ERROR_MEMORY. */
 nt_status nt_examine_normals(const nt_pixels *pixels, nt_normal_facts *facts, nt_error *error);
 
-/* ---- images made small, for looking at: reduce.c ---- */
+/* ---- images made small, for looking at: image.c ---- */
 
 /*
  * Makes a JPEG of an image whose longer side has at most `most` pixels; transparency is lost. A JPEG is decoded only

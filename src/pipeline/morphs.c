@@ -80,7 +80,7 @@ nt_status nt_morphs_restore(nt_mesh *mesh, nt_morph_work *work, bool targets)
 
 /* ---- classes of corners ---- */
 
-/* Classes of scene/morphs.c, by corner, and rows of targets as they are there. */
+/* Classes of scene/values.c, by corner, and rows of targets as they are there. */
 typedef struct nt_corner_classes {
 	uint32_t *of;     /* [corner_count]; the block of the following, which have room for as many */
 	uint32_t *first;  /* [count] first corner of a class */

@@ -10,7 +10,7 @@
 #include "base/text.h"
 #include "scene/scene.h"
 
-/* ---- sRGB and linear light: srgb.c ---- */
+/* ---- sRGB and linear light: values.c ---- */
 
 /*
  * OBJ and PLY have colours as they are shown, sRGB; scenes and glTF linear ones. IEC 61966-2-1:
@@ -126,7 +126,7 @@ const char *nt_origin_text(const double origin[3], char text[NT_ORIGIN_TEXT]);
 nt_status nt_polygon_triangulate(const float (*points)[3], const uint32_t *vertices, size_t count, uint32_t *triangles,
 	bool *sound);
 
-/* ---- texture coordinates as a sampler sees them, which tangents therefore follow: transform.c ---- */
+/* ---- texture coordinates as a sampler sees them, which tangents therefore follow: values.c ---- */
 
 /* KHR_texture_transform, or -s and -o of MTL, with v up: (u, v) is scaled, turned counterclockwise, moved. */
 typedef struct nt_uv_transform {
@@ -141,7 +141,7 @@ typedef struct nt_uv_transform {
  */
 nt_status nt_mesh_transform(nt_mesh *mesh, const nt_uv_transform *transform, nt_arena *arena, nt_error *error);
 
-/* ---- tangents that morph targets give to vertices: morphs.c ---- */
+/* ---- tangents that morph targets give to vertices: values.c ---- */
 
 typedef struct nt_morph_tangents {
 	uint32_t *class_of; /* [vertex_count + split.source_count] of the mesh; NT_NONE: no corner has the vertex, and

@@ -162,7 +162,7 @@ scene "where the tree lies makes no difference to what is built"
 # tests/soak/packages.sh builds everything twice
 mkdir -p "a place with a long name/tree"
 cp -r "$ROOT/Makefile" "$ROOT/src" "$ROOT/include" "$ROOT/tests" "a place with a long name/tree"
-objects="base/pool.c.o topology/weld.c.o obj/mtl.c.o ext/digest.c.o"
+objects="base/pool.c.o topology/weld.c.o obj/mtl.c.o ext/linked.c.o"
 for object in $objects; do [ -f "$ROOT/build/release/$object" ] || wrong "$object is not there"; done
 make -s -C "a place with a long name/tree" MAKEFLAGS= config=release $(printf 'build/release/%s ' $objects) \
 	>"$WORK/out.txt" 2>"$WORK/err.txt" || wrong "make failed"
