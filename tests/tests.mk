@@ -139,7 +139,7 @@ soak-built: check-built
 
 # make fuzz SECONDS=60 TARGET="obj gltf": made-up inputs, for so long with each target, all of them by default. Needs
 # clang and libclang-rt-14-dev.
-$(B)/tests/fuzz/target: $(patsubst %,$(B)/tests/%.o,fuzz/target fuzz/json_mutator fuzz/image support/any_settings support/mutate) \
+$(B)/tests/fuzz/target: $(patsubst %,$(B)/tests/%.o,fuzz/target fuzz/image support/any_settings support/mutate) \
 		$(module_obj) $(B)/libtool.a $(B)/libnmtan.a
 	$(CXX) $(NT_LDFLAGS) -fsanitize=fuzzer -Wl,--wrap=open,--wrap=rename,--wrap=link -o $@ $(filter %.o,$^) -Wl,--start-group $(filter %.a,$^) -Wl,--end-group $(LINKED_LIBS) -lz
 

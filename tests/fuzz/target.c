@@ -22,7 +22,6 @@
 #include <unistd.h>
 #include "any_settings.h"
 #include "image.h"
-#include "json_mutator.h"
 #include "mutate.h"
 #include "pipeline/run.h"
 #include "report/render/render.h"

@@ -14,13 +14,12 @@ import os
 import struct
 import sys
 
+import gltf_table as table
+from gltf_table import BYTE, FLOAT, SHORT, UBYTE, UINT, USHORT, Stream
+
 FOLDER = sys.argv[1]
 DOUBLED = '--doubled' in sys.argv
 NX, NY = 12, 9  # quads
-FLOAT, USHORT, UBYTE, UINT, BYTE, SHORT = 5126, 5123, 5121, 5125, 5120, 5122
-CODES = {FLOAT: 'f', USHORT: 'H', UBYTE: 'B', UINT: 'I', BYTE: 'b', SHORT: 'h'}
-SIZES = {FLOAT: 4, USHORT: 2, UBYTE: 1, UINT: 4, BYTE: 1, SHORT: 2}
-TYPES = {1: 'SCALAR', 2: 'VEC2', 3: 'VEC3', 4: 'VEC4'}
 
 
 def sheet():
@@ -42,11 +41,11 @@ def sheet():
     if DOUBLED:
         for rows in (positions, normals, uvs, colors, joints, weights, custom, up, turn):
             rows += rows
-    return {'POSITION': (FLOAT, False, positions), 'NORMAL': (FLOAT, False, normals),
-            'TEXCOORD_0': (FLOAT, False, uvs), 'COLOR_0': (UBYTE, True, colors),
-            'JOINTS_0': (UBYTE, False, joints), 'WEIGHTS_0': (USHORT, True, weights),
-            '_CUSTOM': (FLOAT, False, custom)}, \
-           [{'POSITION': (FLOAT, False, up), 'NORMAL': (FLOAT, False, turn)}, {'POSITION': (FLOAT, False, turn)}]
+    return {'POSITION': Stream(FLOAT, positions, bounds=True), 'NORMAL': Stream(FLOAT, normals),
+            'TEXCOORD_0': Stream(FLOAT, uvs), 'COLOR_0': Stream(UBYTE, colors, True), 'JOINTS_0': Stream(UBYTE, joints),
+            'WEIGHTS_0': Stream(USHORT, weights, True), '_CUSTOM': Stream(FLOAT, custom)}, \
+           [{'POSITION': Stream(FLOAT, up, bounds=True), 'NORMAL': Stream(FLOAT, turn)},
+            {'POSITION': Stream(FLOAT, turn, bounds=True)}]
 
 
 def triangles(x0=0, x1=NX):
@@ -58,121 +57,41 @@ def triangles(x0=0, x1=NX):
     return out
 
 
-def pack(kind, row):
-    return struct.pack('<%d%s' % (len(row), CODES[kind]), *row)
+def pack(kind, rows):
+    return b''.join(Stream(kind, [row]).bytes(row) for row in rows)
 
 
-class Document:
+class Document(table.Document):
     def __init__(self):
-        self.json = {'asset': {'generator': 'layouts', 'version': '2.0'}, 'scene': 0,
-                     'scenes': [{'nodes': [0]}], 'nodes': [{'mesh': 0, 'extras': {}}],
-                     'meshes': [{'name': 'sheet', 'primitives': []}],
-                     'materials': [{'name': 'bumpy', 'normalTexture': {'index': 0}}],
-                     'textures': [{'source': 0}], 'images': [{'uri': PNG}],
-                     'accessors': [], 'bufferViews': [], 'buffers': [],
-                     'extras': {'big': 9007199254740993, 'small': -9223372036854775808, 'tiny': 1e-300,
-                                'nothing': None, 'empty': {}, 'list': [[], {}]}}
+        super().__init__('')
+        del self.json['extensionsUsed']
+        self.json.update(nodes=[{'mesh': 0, 'extras': {}}], scenes=[{'nodes': [0]}], meshes=[{'name': 'sheet', 'primitives': []}],
+                         materials=[{'name': 'bumpy', 'normalTexture': {'index': 0}}])
         self.bins = [bytearray()]
 
-    def view(self, data, buffer=0, align=4, **more):
-        target = self.bins[buffer]
-        while len(target) % align:
-            target.append(0)
-        self.json['bufferViews'].append({'buffer': buffer, 'byteOffset': len(target), 'byteLength': len(data), **more})
-        target.extend(data)
-        return len(self.json['bufferViews']) - 1
+    def lay(self, how, attributes, **more):
+        """The numbers of accessors that a layout gives attributes."""
+        how(self, list(attributes.values()), **more)
+        return {name: s.number for name, s in attributes.items()}
 
-    def accessor(self, attribute, view, offset=0, **more):
-        kind, normalized, rows = attribute
-        a = {'bufferView': view, 'byteOffset': offset, 'componentType': kind, 'count': len(rows),
-             'type': TYPES[len(rows[0])]}
-        if view is None:
-            del a['bufferView'], a['byteOffset']
-        if normalized:
-            a['normalized'] = True
-        a.update(more)
-        self.json['accessors'].append(a)
-        return len(self.json['accessors']) - 1
-
-    def bounds(self, attribute):
-        columns = list(zip(*[struct.unpack('<%df' % len(r), struct.pack('<%df' % len(r), *r)) for r in attribute[2]]))
-        return {'min': [min(c) for c in columns], 'max': [max(c) for c in columns]}
-
-    def more(self, name, attribute):
-        return self.bounds(attribute) if name == 'POSITION' else {}
-
-    def separate(self, attributes, buffer=0):
-        """A view for every accessor."""
-        return {n: self.accessor(a, self.view(b''.join(self.padded(a, r) for r in a[2]), buffer,
-                                              **self.stride(a)), **self.more(n, a)) for n, a in attributes.items()}
-
-    def row_size(self, attribute):
-        return (SIZES[attribute[0]] * len(attribute[2][0]) + 3) // 4 * 4
-
-    def padded(self, attribute, row):
-        return pack(attribute[0], row).ljust(self.row_size(attribute), b'\0')
-
-    def stride(self, attribute):
-        return {'byteStride': self.row_size(attribute)}
-
-    def sequential(self, attributes):
-        """One view per row size, accessors one behind the other, as many exporters do."""
-        out = {}
-        for size in sorted({self.row_size(a) for a in attributes.values()}):
-            names = [n for n in attributes if self.row_size(attributes[n]) == size]
-            data, offsets = b'', {}
-            for n in names:
-                offsets[n] = len(data)
-                data += b''.join(self.padded(attributes[n], r) for r in attributes[n][2])
-            view = self.view(data, byteStride=size, target=34962)
-            for n in names:
-                out[n] = self.accessor(attributes[n], view, offsets[n], **self.more(n, attributes[n]))
-        return out
-
-    def interleaved(self, attributes, views_overlap=False, gap=0, cut=False, views_cut=False):
-        offsets, size = {}, 0
-        for n, a in attributes.items():
-            offsets[n] = size
-            size += self.row_size(a)
-        stride = size + gap
-        rows = len(next(iter(attributes.values()))[2])
-        data = b''.join(b''.join(self.padded(a, a[2][i]) for a in attributes.values()) + b'\xEE' * gap
-                        for i in range(rows))
-        if cut:
-            data = data[:len(data) - gap]
-        view = self.view(data, byteStride=stride)
-        out = {}
-        for n, a in attributes.items():
-            if views_overlap:
-                base = self.json['bufferViews'][view]['byteOffset']
-                self.json['bufferViews'].append({'buffer': 0, 'byteOffset': base + offsets[n],
-                                                 'byteLength': (rows - 1) * stride + self.row_size(a) if views_cut
-                                                 else len(data) - offsets[n], 'byteStride': stride})
-                out[n] = self.accessor(a, len(self.json['bufferViews']) - 1, **self.more(n, a))
-            else:
-                out[n] = self.accessor(a, view, offsets[n], **self.more(n, a))
-        if views_overlap:  # the first view was for the bytes only
-            for a in self.json['accessors']:
-                if a.get('bufferView', -1) > view:
-                    a['bufferView'] -= 1
-            del self.json['bufferViews'][view]
-        return out
+    def separate(self, attributes):
+        return self.lay(lambda d, streams: [d.alone(s) for s in streams], attributes)
 
     def indices(self, list_, kind, view=None, offset=0):
-        if view is None:
-            view = self.view(b''.join(pack(kind, (i,)) for i in list_), target=34963)
-        return self.accessor((kind, False, [(i,) for i in list_]), view, offset)
+        numbers = Stream(kind, [(i,) for i in list_])
+        self.accessor(numbers, self.view(pack(kind, numbers.rows), target=34963) if view is None else view, offset)
+        return numbers.number
 
     def again(self, names):
         """Accessors of their own over the same bytes."""
         self.json['accessors'] += [dict(self.json['accessors'][a]) for a in names.values()]
         return {n: len(self.json['accessors']) - len(names) + i for i, n in enumerate(names)}
 
-    def sparse(self, accessor, kind, where, rows):
+    def replace(self, accessor, kind, where, rows):
         self.json['accessors'][accessor]['sparse'] = {
             'count': len(where),
-            'indices': {'bufferView': self.view(b''.join(pack(kind, (i,)) for i in where)), 'componentType': kind},
-            'values': {'bufferView': self.view(b''.join(pack(FLOAT, r) for r in rows))}}
+            'indices': {'bufferView': self.view(pack(kind, [(i,) for i in where])), 'componentType': kind},
+            'values': {'bufferView': self.view(pack(FLOAT, rows))}}
 
     def quantized(self):
         self.json['extensionsUsed'] = self.json['extensionsRequired'] = ['KHR_mesh_quantization']
@@ -210,10 +129,6 @@ class Document:
             f.write(b'glTF' + struct.pack('<II', 2, 12 + len(body)) + body)
 
 
-# 1x1, one grey pixel
-PNG = 'data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR4nGNoAAAAggCBd81ytgAAAABJRU5ErkJggg=='
-
-
 def one(name, lay_out, kind=USHORT, how='file', chunks=(), **more):
     """A file of one primitive."""
     d = Document()
@@ -221,8 +136,12 @@ def one(name, lay_out, kind=USHORT, how='file', chunks=(), **more):
     d.write(name, how, chunks)
 
 
+def interleaved(d, streams, gap=0):
+    table.interleaved(d, streams, gap, joined=True)
+
+
 def with_targets(d, targets):
-    return [d.separate(t) for t in targets]
+    return [d.separate({name: Stream(FLOAT, s.rows, **s.how) for name, s in t.items()}) for t in targets]
 
 
 attributes, targets = sheet()
@@ -236,7 +155,7 @@ d.primitive(d.separate(attributes), d.indices(triangles(), USHORT), targets=with
 d.write('plain.gltf')
 
 d = Document()
-d.primitive(d.sequential(attributes), d.indices(triangles(), UBYTE_INDEX), targets=with_targets(d, targets))
+d.primitive(d.lay(table.sequential, attributes), d.indices(triangles(), UBYTE_INDEX), targets=with_targets(d, targets))
 tail = d.view(b'an unknown extension owns these bytes', align=8)
 d.json['extensionsUsed'] = ['VENDOR_secret']
 d.json['extensions'] = {'VENDOR_secret': {'bufferView': tail, 'accessor': 0}}
@@ -244,18 +163,14 @@ d.write('sequential_u8.gltf')
 
 d = Document()
 tight = d.indices(triangles(), UINT)
-d.primitive(d.interleaved(attributes), tight, targets=with_targets(d, targets))
+d.primitive(d.lay(interleaved, attributes, gap=0), tight, targets=with_targets(d, targets))
 d.write('interleaved_u32.gltf', 'data')
 
-one('interleaved_gap.glb', lambda d: d.interleaved(attributes, gap=8, cut=True), how='glb',
-    chunks=[(0x41525458, b'extra chunk.')])
-one('overlapping_views.gltf', lambda d: d.interleaved(attributes, views_overlap=True))
-# each view ends with its last element, as Magnum writes them
-one('overlapping_cut_views.gltf', lambda d: d.interleaved(attributes, views_overlap=True, views_cut=True))
+one('interleaved_gap.glb', lambda d: d.lay(interleaved, attributes, gap=8), how='glb', chunks=[(0x41525458, b'extra chunk.')])
 
 d = Document()
 flat = triangles()
-unshared = {n: (k, z, [rows[i] for i in flat]) for n, (k, z, rows) in attributes.items()}
+unshared = {n: Stream(s.kind, [s.rows[i] for i in flat], s.normalized, **s.how) for n, s in attributes.items()}
 d.primitive(d.separate(unshared))
 d.write('unindexed.gltf')
 
@@ -271,7 +186,7 @@ d.write('two_ranges_unindexed.gltf')
 # two primitives on one set of accessors, meeting at a column where u turns
 d = Document()
 shared = d.separate(attributes)
-view = d.view(b''.join(pack(USHORT, (i,)) for i in triangles(0, 6) + triangles(6, NX)))
+view = d.view(pack(USHORT, [(i,) for i in triangles(0, 6) + triangles(6, NX)]))
 d.primitive(dict(shared), d.indices(triangles(0, 6), USHORT, view))
 d.primitive(dict(shared), d.indices(triangles(6, NX), USHORT, view, 2 * len(triangles(0, 6))))
 d.write('two_ranges.gltf')
@@ -304,11 +219,6 @@ d.json['materials'].append({'name': 'turned', 'normalTexture': {
     'index': 0, 'extensions': {'KHR_texture_transform': {'rotation': 0.5}}}})
 d.primitive(dict(shared), whole, targets=[dict(t) for t in moves], material=2)
 d.write('instanced_turned.gltf')
-# and without targets
-d.json['buffers'] = []
-d.json['meshes'][0]['primitives'] = [{k: v for k, v in p.items() if k != 'targets'}
-                                     for p in d.json['meshes'][0]['primitives'][:3]]
-d.write('instanced_still.gltf')
 
 # points without indices share the positions: these must keep their count
 d = Document()
@@ -320,69 +230,64 @@ d.write('shared_with_points.gltf')
 
 # sparse: positions over a base, a morph target of zeros with some rows
 d = Document()
-plain = dict(attributes)
-positions = attributes['POSITION']
-wrong = (FLOAT, False, [(9.0, 9.0, 9.0) if i % 5 == 0 else r for i, r in enumerate(positions[2])])
-names = d.separate({**plain, 'POSITION': wrong})
-some = [i for i in range(len(positions[2])) if i % 5 == 0]
-d.sparse(names['POSITION'], UBYTE_INDEX, some, [positions[2][i] for i in some])
-d.json['accessors'][names['POSITION']].update(d.bounds(positions))
-moved = [i for i in range(len(positions[2])) if i % 13 in (4, 8)]
-target = d.accessor((FLOAT, False, positions[2]), None)
-d.sparse(target, USHORT, moved, [(0.0, 0.0, i * 0.01) for i in moved])
-d.json['accessors'][target].update({'min': [0, 0, 0], 'max': [0, 0, struct.unpack('<f', struct.pack('<f', max(moved) * 0.01))[0]]})
-d.primitive(names, d.indices(triangles(), USHORT), targets=[{'POSITION': target}])
+positions = attributes['POSITION'].rows
+some = range(0, len(positions), 5)
+names = d.separate({**attributes, 'POSITION': Stream(FLOAT, [(9.0, 9.0, 9.0) if i in some else r for i, r in enumerate(positions)])})
+d.replace(names['POSITION'], UBYTE_INDEX, some, [positions[i] for i in some])
+attributes['POSITION'].number = names['POSITION']
+d.bounds(attributes['POSITION'])
+moved = [i for i in range(len(positions)) if i % 13 in (4, 8)]
+target = Stream(FLOAT, [(0.0, 0.0, i * 0.01) if i in moved else (0.0, 0.0, 0.0) for i in range(len(positions))], bounds=True)
+d.accessor(target)
+d.replace(target.number, USHORT, moved, [target.rows[i] for i in moved])
+d.primitive(names, d.indices(triangles(), USHORT), targets=[{'POSITION': target.number}])
 d.write('sparse.gltf')
 
 # wrong tangents are there already, interleaved with the rest
-tangents = (FLOAT, False, [(0.0, 1.0, 0.0, 1.0)] * len(positions[2]))
-one('tangents_interleaved.gltf', lambda d: d.interleaved({**attributes, 'TANGENT': tangents}))
-one('tangents_cut_views.gltf',
-    lambda d: d.interleaved({'TANGENT': tangents, **attributes}, views_overlap=True, views_cut=True))
+tangents = Stream(FLOAT, [(0.0, 1.0, 0.0, 1.0)] * len(positions))
+one('tangents_interleaved.gltf', lambda d: d.lay(interleaved, {**attributes, 'TANGENT': tangents}))
 # the same in views of their own: as floats, as integers, and sparse over zeros
 one('tangents_separate.gltf', lambda d: d.separate({'TANGENT': tangents, **attributes}))
 d = Document()
 d.quantized()
-names = d.separate({'TANGENT': (SHORT, True, [(0, 32767, 0, 32767)] * len(positions[2])), **attributes})
+names = d.separate({'TANGENT': Stream(SHORT, [(0, 32767, 0, 32767)] * len(positions), True), **attributes})
 d.primitive(names, d.indices(triangles(), USHORT))
 d.write('tangents_short.gltf')
 d = Document()
 names = d.separate(attributes)
-names['TANGENT'] = d.accessor(tangents, None)
-d.sparse(names['TANGENT'], USHORT, range(len(positions[2])), tangents[2])
+d.accessor(tangents)
+names['TANGENT'] = tangents.number
+d.replace(names['TANGENT'], USHORT, range(len(positions)), tangents.rows)
 d.primitive(names, d.indices(triangles(), USHORT))
 d.write('tangents_sparse.gltf')
 
 # those of two primitives in one view, as all else of theirs
 d = Document()
-both = d.sequential({n + twin: a for twin in ('', '!') for n, a in {**attributes, 'TANGENT': tangents}.items()})
-d.json['accessors'][both['POSITION!']].update(d.bounds(attributes['POSITION']))
+both = d.lay(table.sequential, {n + twin: Stream(s.kind, s.rows, s.normalized, **s.how) for twin in ('', '!')
+                                for n, s in {**attributes, 'TANGENT': tangents}.items()})
 for twin in ('', '!'):
     d.primitive({n: both[n + twin] for n in (*attributes, 'TANGENT')}, d.indices(triangles(), USHORT))
 d.write('tangents_one_view.gltf')
 
 # several buffers, one of which nothing touches
 d = Document()
-d.bins.append(bytearray())
-d.bins.append(bytearray(b'untouched bytes'))
+d.bins += bytearray(), bytearray(b'untouched bytes')
 names = d.separate({n: attributes[n] for n in ('POSITION', 'NORMAL')})
-names.update(d.separate({n: attributes[n] for n in attributes if n not in names}, 1))
+d.home = 1
+names.update(d.separate({n: attributes[n] for n in attributes if n not in names}))
+d.home = 0
 d.view(b'more of them', 2)
 d.primitive(names, d.indices(triangles(), USHORT))
 d.write('three_buffers.gltf')
 
 # KHR_mesh_quantization
 d = Document()
-quantized = dict(attributes)
-quantized['POSITION'] = (SHORT, True, [tuple(round(v * 8000) for v in r) for r in positions[2]])
-quantized['NORMAL'] = (BYTE, True, [(0, 0, 127)] * len(positions[2]))
-quantized['TEXCOORD_0'] = (USHORT, True, [tuple(round(v * 60000) for v in r) for r in attributes['TEXCOORD_0'][2]])
 d.quantized()
-d.primitive(d.interleaved(quantized), d.indices(triangles(), USHORT))
-for a in d.json['accessors']:
-    if a['componentType'] == SHORT:
-        columns = list(zip(*quantized['POSITION'][2]))
-        a['min'], a['max'] = [min(c) for c in columns], [max(c) for c in columns]
+d.primitive(d.lay(interleaved, {
+    **attributes, 'POSITION': Stream(SHORT, [tuple(round(v * 8000) for v in r) for r in positions], True, bounds=True),
+    'NORMAL': Stream(BYTE, [(0, 0, 127)] * len(positions), True),
+    'TEXCOORD_0': Stream(USHORT, [tuple(round(v * 60000) for v in r) for r in attributes['TEXCOORD_0'].rows], True)}),
+    d.indices(triangles(), USHORT))
 d.write('quantized.gltf')
 
 # a strip and a fan
@@ -401,9 +306,8 @@ def single(value):
 for number, target in enumerate(targets):
     moved = dict(attributes)
     for n, delta in target.items():
-        rows = [tuple(single(single(a) + single(b)) for a, b in zip(r, t))
-                for r, t in zip(attributes[n][2], delta[2])]
+        rows = [tuple(single(single(a) + single(b)) for a, b in zip(r, t)) for r, t in zip(attributes[n].rows, delta.rows)]
         if n == 'NORMAL':
             rows = [tuple(c / sum(x * x for x in r) ** 0.5 for c in r) for r in rows]
-        moved[n] = (FLOAT, False, rows)
+        moved[n] = Stream(FLOAT, rows, bounds=n == 'POSITION')
     one('moved_%d.gltf' % number, lambda d: d.separate(moved))
