@@ -4,7 +4,7 @@
 # wheel and a source distribution in build/python. make amalgamation: the library as one C file in build/amalgamation.
 
 # The tool alone sets deadlines, makes normals and judges tangents. Kernels come before what chooses between them.
-amalgamation_src := $(filter-out src/base/deadline.c src/topology/reversed.c,$(filter src/base/% src/topology/%,$(core_src))) \
+amalgamation_src := $(filter-out src/base/deadline.c,$(filter src/base/% src/topology/%,$(core_src))) \
 	src/tangent/fast/kernel_baseline.c \
 	$(filter-out src/base/% src/topology/% src/tangent/normals.c src/tangent/%/kernel_baseline.c \
 		src/tangent/%/kernel_avx2.c src/tangent/%/kernel_avx512.c,$(core_src))

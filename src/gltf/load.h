@@ -72,24 +72,6 @@ nt_status nt_gltf_quantize_vertices(nt_scene *scene, nt_mesh *mesh, const nt_glt
 /* Normals that were made for meshes with ->quantized: tangents will be solved for what a decoder has of them. */
 nt_status nt_gltf_quantize_made_normals(nt_scene *scene, const nt_read_options *options, nt_error *error);
 
-/* ---- vertices that a primitive uses, of those that it shares with others: compact.c ---- */
-
-typedef struct nt_compact {
-	uint32_t *vertices; /* [count] number of each in the pool, ascending; NULL: the pool's own numbers */
-	size_t count;
-	uint32_t *indices;  /* [corner_count] of these vertices */
-} nt_compact;
-
-/* Numbers the vertices that corners use, of a pool of `vertex_count`; nearly all are taken for all. indices:
- * [corner_count], each below that. All of the view is in the arena, or `indices` themselves. Returns NT_OK or
- * NT_ERROR_MEMORY. */
-nt_status nt_compact_vertices(const uint32_t *indices, size_t corner_count, size_t vertex_count, nt_arena *arena,
-	nt_compact *view);
-
-/* The rows of a view's vertices, as many floats each; `rows` themselves where the view has the pool's numbers. NULL:
- * memory is exhausted. */
-float *nt_compact_rows(const nt_compact *view, const float *rows, size_t floats, nt_arena *arena);
-
 /* ---- KHR_draco_mesh_compression, compressed primitives of a document: draco.c ---- */
 
 /* Decoded blocks are kept: several primitives may share one, and it may be encoded again. */

@@ -111,7 +111,7 @@ float nt_tangent_filter_least(const nt_tangent_filter *filter);
 int nt_filter_bits(const char *filter, const unsigned char *elements, size_t count, size_t stride, int component_type,
 	unsigned components);
 
-/* ---- tangent deltas of morph targets: morph_deltas.c ---- */
+/* ---- tangent deltas of morph targets: load_targets.c ---- */
 
 /* Two float solves of one surface, as a target leaves most of a mesh, differ by some units in the last place, which is
  * 2^-24 near 1: what is not more than 8 of them is not shown. */

@@ -208,7 +208,7 @@ void nt_mend_untextured(nt_mesh *mesh, const nmtan_mesh *view, float *tangents);
 /* The tangents that a mesh without texture coordinates has when its normals become those of `moved`. */
 void nt_turn_untextured(const nt_mesh *mesh, const nmtan_mesh *base, const nmtan_mesh *moved, float *tangents);
 
-/* folded_quads.c, for solve.c. Cuts the folded quads of a mesh with corner_tangents in two and gives each half its
+/* quads.c, for solve.c. Cuts the folded quads of a mesh with corner_tangents in two and gives each half its
  * own sign; the mesh gets new faces and indices, or face_diagonals, which are the arena's. Returns NT_OK or
  * NT_ERROR_MEMORY. */
 nt_status nt_cut_folded_quads(nt_mesh *mesh, float stored_v_offset, unsigned threads, nt_arena *arena);
@@ -225,7 +225,7 @@ static inline bool nt_may_be_left(nt_status load)
 	return load != NT_ERROR_MEMORY && load != NT_ERROR_MISSING && load != NT_ERROR_IO;
 }
 
-/* kept.c. Counts what is wrong with tangents of a loaded mesh that are kept and used; nt_tell_kept() says whether w is
+/* authored.c. Counts what is wrong with tangents of a loaded mesh that are kept and used; nt_tell_kept() says whether w is
  * right once pairs are known. Scratch is the scene's. halved: as nt_find_pairs() has it; NULL: of none. */
 void nt_look_at_kept(nt_scene *scene, nt_mesh *mesh, nt_format written, unsigned threads);
 void nt_tell_kept(nt_scene *scene, const bool *halved);

@@ -389,7 +389,7 @@ unsigned nt_tangent_faults(const float *tangent, const float *normal);
 /* Appends a path as reports show it: see file/path.h. */
 void nt_report_show_path(const nt_report *report, const char *path, nt_buffer *out);
 
-/* ---- things of two versions that are the same, by a key, each once: pairs.c ---- */
+/* ---- things of two versions that are the same, by a key, each once: baseline.c ---- */
 
 /* The key of a thing; 0: it has none. */
 typedef uint64_t (*nt_key_of)(const void *things, size_t index);

@@ -318,7 +318,7 @@ nmtan_status nt_check_faces(const nmtan_mesh *mesh, size_t *corner_count);
 nmtan_status nt_weld_corners(const nmtan_mesh *mesh, size_t corner_count, nt_scratch *scratch,
 	uint32_t *ids, size_t *count);
 
-/* ---- triangles whose tangents run against their texture coordinates: reversed.c ---- */
+/* ---- triangles whose tangents run against their texture coordinates: orientation.c ---- */
 
 /* A triangle with what its corners have. */
 typedef struct nt_tangent_triangle {

@@ -45,7 +45,7 @@ typedef struct nt_turned_images {
 	size_t count, capacity;
 } nt_turned_images;
 
-/* ---- images of an edited document, and references to files: images.c and links.c ---- */
+/* ---- images of an edited document, and references to files: images.c ---- */
 
 /* The destination of an edited document. */
 typedef struct nt_gltf_output {
@@ -76,22 +76,22 @@ nt_status nt_gltf_look_for_images(nt_scene *scene, bool linked, nt_error *error)
 
 void nt_open_images_close(nt_open_images *images);
 
-/* links.c. The text of an external reference: neither a data URI nor anything else than a string. NULL: none. */
+/* The text of an external reference: neither a data URI nor anything else than a string. NULL: none. */
 const char *nt_gltf_external_uri(const nt_json_value *object, size_t *length);
 
-/* links.c. The way from the folder of one file to the folder of another as a URI: "../other/"; "" where they are
+/* The way from the folder of one file to the folder of another as a URI: "../other/"; "" where they are
  * the same or cannot be found. "-" is a file of the current folder. */
 nt_status nt_gltf_link_prefix(nt_arena *arena, const char *from, const char *to, const char **prefix,
 	nt_error *error);
 
-/* links.c. Whether the uri of a buffer or an image, with a prefix before it, leads out of the output's folder. Not
+/* Whether the uri of a buffer or an image, with a prefix before it, leads out of the output's folder. Not
  * where there is no prefix: it means then what it means in the input. */
 bool nt_gltf_link_leaves(const nt_json_value *object, const char *prefix);
 
-/* links.c. Puts the prefix before the uri of a buffer or an image, where that is relative. */
+/* Puts the prefix before the uri of a buffer or an image, where that is relative. */
 nt_status nt_gltf_link(nt_json *json, nt_json_value *object, const char *prefix, nt_error *error);
 
-/* links.c. A finding about a uri that leads out of the output's folder: of an element of "buffers" or "images". */
+/* A finding about a uri that leads out of the output's folder: of an element of "buffers" or "images". */
 void nt_gltf_tell_leaving(nt_scene *scene, const char *array, size_t index, const char *why);
 
 #endif
