@@ -225,8 +225,8 @@ static inline bool nt_may_be_left(nt_status load)
 	return load != NT_ERROR_MEMORY && load != NT_ERROR_MISSING && load != NT_ERROR_IO;
 }
 
-/* authored.c. Counts what is wrong with tangents of a loaded mesh that are kept and used; nt_tell_kept() says whether w is
- * right once pairs are known. Scratch is the scene's. halved: as nt_find_pairs() has it; NULL: of none. */
+/* authored.c. Counts what is wrong with tangents of a loaded mesh that are kept and used; nt_tell_kept() says whether w
+ * is right once pairs are known. Scratch is the scene's. halved: as nt_find_pairs() has it; NULL: of none. */
 void nt_look_at_kept(nt_scene *scene, nt_mesh *mesh, nt_format written, unsigned threads);
 void nt_tell_kept(nt_scene *scene, const bool *halved);
 
