@@ -20,6 +20,8 @@
 #include <unistd.h>
 #include "ext/tables.h"
 
+/* ---- modules ---- */
+
 /* The folder of installed modules; NULL if the tool is not installed. */
 #ifdef NT_LIBDIR
 static const char *const installed = NT_LIBDIR "/nmtan";
@@ -89,7 +91,7 @@ static nt_status look_in(const char *folder, const row *module, char path[PATH_M
 	return nt_fail(error, NT_ERROR_IO, "cannot look for %s: %s", path, strerror(errno));
 }
 
-static nt_status find(const row *module, char path[PATH_MAX], nt_error *error)
+static nt_status find_module(const row *module, char path[PATH_MAX], nt_error *error)
 {
 	char program[PATH_MAX];
 	bool found = false;
@@ -131,7 +133,7 @@ static nt_status check(const row *module, const char *path, const nt_module_head
 static nt_status load(const row *module, const nt_module_head **head, nt_error *error)
 {
 	char path[PATH_MAX], symbol[64];
-	const nt_status status = find(module, path, error);
+	const nt_status status = find_module(module, path, error);
 	if (status)
 		return status;
 	void *enough = malloc(LOADER_BYTES);
@@ -181,4 +183,75 @@ void nt_module_describe(nt_module module, char *line, size_t size)
 			head->library_version ? head->library_version : "", head->licence);
 	else
 		snprintf(line, size, "%s: %s", rows[module].name, error.message);
+}
+
+/* ---- functions that are in modules, which the first call opens ---- */
+
+nt_status nt_draco_decode(nt_draco **result, const unsigned char *bytes, size_t size, size_t max_faces, nt_error *error)
+{
+	nt_status status;
+	const nt_draco_table *draco = nt_module_open(NT_MODULE_DRACO, &status, error);
+	*result = NULL;
+	return draco ? draco->decode(result, bytes, size, max_faces, error) : status;
+}
+
+nt_status nt_draco_encode(const nt_draco_mesh *mesh, nt_draco_block *block, nt_error *error)
+{
+	nt_status status;
+	const nt_draco_table *draco = nt_module_open(NT_MODULE_DRACO, &status, error);
+	*block = (nt_draco_block){0};
+	return draco ? draco->encode(mesh, block, error) : status;
+}
+
+nt_status nt_draco_quantize(const nt_draco_mesh *mesh, float *const *values, nt_error *error)
+{
+	nt_status status;
+	const nt_draco_table *draco = nt_module_open(NT_MODULE_DRACO, &status, error);
+	return draco ? draco->quantize(mesh, values, error) : status;
+}
+
+nt_status nt_meshopt_check(const nt_meshopt_view *view, uint64_t size, const char *pointer, nt_error *error)
+{
+	nt_status status;
+	const nt_meshopt_table *meshopt = nt_module_open(NT_MODULE_MESHOPT, &status, error);
+	return meshopt ? meshopt->check(view, size, pointer, error) : status;
+}
+
+nt_status nt_meshopt_unpack(const nt_meshopt_view *view, const unsigned char *packed, unsigned char *bytes,
+	const char *pointer, nt_error *error)
+{
+	nt_status status;
+	const nt_meshopt_table *meshopt = nt_module_open(NT_MODULE_MESHOPT, &status, error);
+	return meshopt ? meshopt->unpack(view, packed, bytes, pointer, error) : status;
+}
+
+nt_status nt_meshopt_filter(const nt_meshopt_view *view, unsigned char *bytes, const char *pointer, nt_error *error)
+{
+	nt_status status;
+	const nt_meshopt_table *meshopt = nt_module_open(NT_MODULE_MESHOPT, &status, error);
+	return meshopt ? meshopt->filter(view, bytes, pointer, error) : status;
+}
+
+nt_status nt_meshopt_pack(const nt_meshopt_view *view, const unsigned char *bytes, unsigned char **packed, size_t *size,
+	nt_error *error)
+{
+	nt_status status;
+	const nt_meshopt_table *meshopt = nt_module_open(NT_MODULE_MESHOPT, &status, error);
+	return meshopt ? meshopt->pack(view, bytes, packed, size, error) : status;
+}
+
+nt_status nt_walk_marked(const nt_walked_mesh *mesh, nt_walk_taker *take, void *context, size_t *left_out,
+	nt_error *error)
+{
+	nt_status status;
+	const nt_openmesh_table *openmesh = nt_module_open(NT_MODULE_OPENMESH, &status, error);
+	return openmesh ? openmesh->walk(mesh, take, context, left_out, error) : status;
+}
+
+nt_status nt_tinygltf_accept(const unsigned char *bytes, size_t size, nt_tinygltf_find find, void *user,
+	nt_error *error)
+{
+	nt_status status;
+	const nt_tinygltf_table *tinygltf = nt_module_open(NT_MODULE_TINYGLTF, &status, error);
+	return tinygltf ? tinygltf->accept(bytes, size, find, user, error) : status;
 }
