@@ -465,8 +465,8 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"normal map's green channel is inverted; its red one if T alone is reversed. The finding gives the "
 		"share: 100 % by w means that the exporter's convention is inverted, which is what happens when V is "
 		"not flipped; reversed tangents were made for other texture coordinates. An info if no material uses "
-		"the tangents; a warning if only a mirroring texture transform makes them wrong, and up to two "
-		"thousandths of the triangles and of their area.",
+		"the tangents; a warning if only a texture transform makes them wrong, which mirrors or turns, and "
+		"up to two thousandths of the triangles and of their area.",
 		"Compute the tangents again.",
 		"a glTF quad, upright and not mirrored, with w = -1"),
 	ROW(TAN_DIRECTION_MISMATCH, WARNING, "w--", LOOK, "--existing=replace",

@@ -322,8 +322,11 @@ static nt_status check_signs(nt_check *check)
 	nt_tally_number(wrong, "wrong_w", sums[BY_W]);
 	nt_tally_number(wrong, "reversed_tangents", sums[REVERSED] + sums[BY_T]);
 	nt_tally_number(wrong, "right_without_transform", sums[UNTRANSFORMED]);
-	/* exporters disagree about texture transforms, and so do renderers: not an error */
-	const bool untransformed = sums[UNTRANSFORMED] > 0.0 && sums[UNTRANSFORMED] == count;
+	/* Exporters disagree about texture transforms, and so do renderers: not an error. One that turns the texture by
+	 * more than a quarter reverses T and the bitangent, but leaves w. */
+	const nt_maker *maker = &check->facts->maker;
+	const bool untransformed = (sums[UNTRANSFORMED] > 0.0 && sums[UNTRANSFORMED] == count) ||
+		(maker->untransformed && !maker->inverted);
 	const bool slivers = share <= SLIVER_SHARE && wrong->area <= SLIVER_SHARE * check->total_area;
 	const bool judged = check->stored == NT_STORED_AUTHORED;
 	if ((judged || check->mesh->keeps_inverted) && check->mesh->pair)

@@ -100,15 +100,16 @@ static void put_result(nt_walk *w, const nt_report_finding *finding, nt_buffer *
 /* Inputs that could not be read, and findings that are not here. */
 static void put_invocation(const nt_walk *w, nt_buffer *out)
 {
-	size_t results = 0, failures = 0;
+	size_t results = 0;
+	bool failed = false;
 	for (size_t i = 0; i < w->count; i++) {
 		results += w->items[i]->finding_count;
-		failures += w->items[i]->failure != NULL;
+		failed |= w->items[i]->failure != NULL;
 	}
 	const size_t cut = results > MOST_RESULTS ? results - MOST_RESULTS : 0;
 	const size_t missing = nt_report_totals(w->items, w->count).dropped + cut;
 	nt_put(out, NT_JSON, "\t\t'invocations': [{'executionSuccessful': %hhd, 'toolExecutionNotifications': [",
-		(bool)!failures);
+		!failed);
 	for (size_t i = 0; i < w->count; i++) {
 		const nt_report *report = w->items[i];
 		if (!report->failure)

@@ -152,11 +152,8 @@ static uint32_t build_sampler(nt_others *others, size_t first)
 	nt_other *all = others->all + first;
 	uint32_t kept = 0;
 	for (size_t i = 0; first + i < others->count && !compare_samplers(all[i].mesh, all[0].mesh); i++) {
-		if (!measure(&all[i]))
-			continue;
-		const nt_other other = all[i];
-		all[i] = all[kept];
-		all[kept++] = other;
+		if (measure(&all[i]))
+			all[kept++] = all[i]; /* all behind are of the sampler, whichever of its meshes they are */
 	}
 	build_tree(all, kept);
 	return kept;
