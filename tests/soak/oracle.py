@@ -5,7 +5,7 @@
 Builds HASH from git in build/oracle, converts every mesh below the folders with both programs and a dozen sets of
 options, and compares exit codes, messages (by code and place), reports (field by field) and outputs: their names and bytes,
 and where the bytes of a glTF differ, every value. It prints a table of kinds and counts, the first five of each kind
-(all of them with --all), and fails if a difference is not among those that EXPLAINED names. With --sample, at most N files
+(all of them with --all), and fails if a difference is not among those that NEWER and OLDER name. With --sample, at most N files
 of each folder are taken, the same ones each time; with --bytes, only files up to that size.
 """
 import collections
@@ -51,16 +51,25 @@ SETS = [
     ('check', None, '--check --fail-on=warning --max-issues=0 --report=report.json'),
 ]
 
-# Changes that are meant whatever the older tree is.
+RULES = 'rules of flipped, nearly degenerate and mirrored triangles (309a1b1f, 325de67c, f63d0ada, 1c327b56)'
+# Changes that are meant: (kind, pattern of "set path detail", why). The first that fits is taken.
 LAYOUT = [('layout', '', 'the same values lie elsewhere, or in a view of another number')]
-# Intended changes since COMMIT, which is older than issues 44, 47 and 49: (kind, pattern of "set path detail", why). The first
-# that fits is taken. A step beside another commit has none.
+# Since 682f52f6.
+NEWER = LAYOUT + [
+    ('messages', r' UV_(FLIPPED_TRIANGLE|NEAR_DEGENERATE|DEGENERATE_TRIANGLE|MIRROR_SEAM): ', RULES),
+    ('report', r' /findings (UV_(FLIPPED_TRIANGLE|NEAR_DEGENERATE|DEGENERATE_TRIANGLE|MIRROR_(SEAM|OVERLAP|LONE)|'
+               r'MIXED_WINDING_ISLAND)|TAN_MIRROR_SHARED_VERTEX): ', RULES),
+    ('report', r' /seams: | /files/N/meshes/N/(seam_(count|length)|edges/mirror|islands_by_kind/\w+|'
+               r'islands/N/(kind|covered_share|twin)): ', RULES),
+    ('report', r' /files/N/verdict: .* flipped', RULES),
+]
+# Since COMMIT, which is older than issues 44, 47 and 49.
 FINDINGS = (r'(NORMALS_MADE|REFERENCE_LOST|MATERIAL_LOST|MATERIAL_FIRST|IMAGE_MISSING|TAN_QUADS_LIKELY|TAN_QUADS_NONE|UV_HARD_EDGE|'
             r'UV_MISSING|UV_UNMAPPED|UV_FOLDED_QUAD|UV_MIXED_WINDING_ISLAND|UV_DEGENERATE_TRIANGLE|POS_DEGENERATE_TRIANGLE|'
             r'UV_NEAR_DEGENERATE|MESH_INCONSISTENT_WINDING|MESH_NON_MANIFOLD_EDGE|MESH_NORMAL_ZERO|POS_NOT_FINITE|POS_ORIGIN|'
             r'MESH_NORMAL_AGAINST_FACE|TAN_DIRECTION_MISMATCH|TAN_SIGN_MISMATCH|TAN_NON_UNIT|TAN_MIXED_W_TRIANGLE|TAN_ZERO|'
             r'STATEMENT_IGNORED)')
-EXPLAINED = LAYOUT + [
+OLDER = NEWER + [
     ('values', r' out\.gl\w+: \S*/name is new(\nout\.gl\w+: \S*/name is new)*$', 'a view whose number is taken again keeps its name'),
     ('values', r'^weld .*/indices/(min|max) is new', 'indices that get a new view keep their accessor, whose bounds are those of the new ones'),
     ('values', r'^quads ', 'halves of quads are found otherwise (35df539b, a444b5ff)'),
@@ -117,10 +126,19 @@ def run(program, options, source, ending, folder):
     return code, TIMES.sub('TIME', text), files_below(folder)
 
 
-def places(text):
-    """Codes, JSON pointers, lines of files and numbers of meshes in messages: what stays if the words change."""
-    return collections.Counter(re.findall(r'\b[A-Z]+(?:_[A-Z]+)+\b|/(?:meshes|accessors|bufferViews|buffers|images|nodes|materials)/\d[\w/]*|'
-                                          r':\d+:|byte \d+|mesh "[^"]*", primitive \d+', text))
+def compare_messages(old, new):
+    """By code; a line that has none by its words. How many of each severity there are follows from the findings."""
+    texts = []
+    for text in (old, new):
+        lines = collections.defaultdict(list)
+        for line in re.sub(r', (?:\d+ (?:info|warning|error)s?|no findings)\b', '', text).splitlines():
+            code = re.search(r'\[([A-Z]+_[A-Z_]+)\]', line)
+            lines[code[1] if code else '"%s"' % re.sub(r'\S*/', '', line)[:150]].append(line)
+        texts.append({name: sorted(lines[name]) for name in lines})
+    for name in sorted(texts[0].keys() | texts[1].keys()):
+        a, b = (collections.Counter(text.get(name, ())) for text in texts)
+        if a != b:
+            yield '%s: -%d +%d' % (name, (a - b).total(), (b - a).total())
 
 
 def fields(value, path=''):
@@ -135,10 +153,25 @@ def fields(value, path=''):
         yield path, value
 
 
-def compare_json(old, new):
-    a, b = dict(fields(json.loads(old))), dict(fields(json.loads(new)))
+def compare_reports(old, new):
+    """Findings by code and seams as sets, all else field by field. Totals follow from the findings."""
+    reports, sets = [json.loads(old), json.loads(new)], []
+    for report in reports:
+        found = collections.defaultdict(collections.Counter)
+        for file in report.get('files', [report]):
+            lists = [('/findings ' + finding['code'], finding) for finding in file.pop('findings', ())]
+            lists += [('/seams', seam) for mesh in file.get('meshes', ()) for seam in mesh.pop('seams', None) or ()]
+            for name, item in lists:
+                found[name][json.dumps(item, sort_keys=True)] += 1
+        sets.append(found)
+    for name in sorted(sets[0].keys() | sets[1].keys()):
+        a, b = (found[name] for found in sets)
+        if a != b:
+            yield '%s: -%d +%d' % (name, (a - b).total(), (b - a).total())
+    a, b = (dict(fields(report)) for report in reports)
     for key in sorted(set(a) | set(b)):
-        if a.get(key) != b.get(key) and not re.search(r'seconds|version$', key):
+        follows = sets[0] != sets[1] and '/totals/' in key
+        if a.get(key) != b.get(key) and not follows and not re.search(r'seconds|version$', key):
             yield '%s: %r -> %r' % (re.sub(r'\d+', 'N', key), a.get(key), b.get(key))
 
 
@@ -161,9 +194,7 @@ def compare(job):
         old, new = (run(program, options, source, ending, name) for program, name in zip(programs, folders))
         if old[0] != new[0]:
             found.append(('exit code', '%s -> %s' % (old[0], new[0])))
-        if old[1] != new[1]:
-            a, b = places(old[1]), places(new[1])
-            found.append(('words', '') if a == b else ('messages', '-%s +%s' % (dict(a - b), dict(b - a))))
+        found += [('messages', text) for text in compare_messages(old[1], new[1])]
         both = {name for name in old[2].keys() & new[2].keys() if old[2][name] != new[2][name]}
         parts = {name for name in both if name.endswith('.bin')} if 'out.gltf' in new[2] else set()
         if parts:
@@ -173,7 +204,7 @@ def compare(job):
             if a is None or b is None:
                 found.append(('names', '%s is %s' % (name, 'new' if a is None else 'gone')))
             elif name == 'report.json':
-                found += [('report', text) for text in list(compare_json(a, b))[:5]] if a != b else []
+                found += [('report', text) for text in compare_reports(a, b)] if a != b else []
             elif name in both:
                 found.append(compare_outputs(name, a, b, folders))
     return [(kind, label, source, text) for kind, text in found]
@@ -198,7 +229,7 @@ for word in sys.argv[1:]:
                        if name.lower().endswith(MESHES) and os.path.getsize(os.path.join(path, name)) <= largest)
         inputs += random.Random(45).sample(below, min(sample, len(below)))
 programs = [build(commit), os.path.abspath('build/release/nmtan')]
-rows = EXPLAINED if commit.startswith(COMMIT) else LAYOUT
+rows = OLDER if commit.startswith(COMMIT) else NEWER if commit.startswith('682f52f6') else LAYOUT
 work = [(source, options) for source in sorted(inputs) for options in SETS if only in options[0]]
 began = time.monotonic()
 counts, examples, unexplained = collections.Counter(), collections.defaultdict(list), 0
