@@ -79,14 +79,6 @@ cmp d.html d1.html || wrong "one thread writes another page"
 run --check --diff --report=same.html new.obj new.obj
 is "$(value same.html '[m["changed"] for m in r["diff"]["meshes"]], [x["code"] for f in r["files"] for x in f["findings"] if not x["known"]]')" "([False], [])"
 
-scene "meshes that came and went are told"
-printf 'o one\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nvn 0 0 1\nf 1/1/1 2/2/1 3/3/1\n' >old.obj
-{ cat old.obj; printf 'o two\nv 3 0 0\nv 4 0 0\nv 3 1 0\nf 4/1/1 5/2/1 6/3/1\nf 6/1/1 5/2/1 4/3/1\n'; } >new.obj
-run --check --diff old.obj new.obj
-prints 'object "two": new, 2 triangles'
-run --check --diff new.obj old.obj
-prints 'object "two": gone, 2 triangles'
-
 scene "wrong uses are refused"
 cp "$data/quad.obj" .
 run --check --diff quad.obj

@@ -20,11 +20,6 @@ for name in mirrored_cube head quad; do
 	is "$(counts_of $name.json)" "$(python3 "$report/count.py" "$data/$name.obj")"
 done
 
-scene "the mirrored cube has one closed seam of four edges in the plane x = 0"
-run --check --report=r.json "$data/mirrored_cube.obj"
-is "$(value r.json '[(s["closed"], s["edge_count"], s["length"], s["plane"]["text"])
-	for s in r["files"][0]["meshes"][0]["seams"]]')" "[(True, 4, 8, 'x = 0')]"
-
 scene "counts of difficult public meshes are those of the independent script"
 models=$ROOT/../shared/models/obj
 if [ -d "$models" ]; then
@@ -312,41 +307,6 @@ prints "MATERIAL_UNKNOWN"
 run $strict --baseline=old.json --report=r.json m.obj
 says "other [MATERIAL_UNKNOWN]"
 
-scene "--max-issues drops the least severe and says so"
-run --check --max-issues=1 --severity=UV_MIRROR_SEAM=warning --report=r.json "$data/head.obj"
-validates report r.json
-is "$(value r.json '(r["truncated"], r["totals"]["dropped"] > 0, len(r["files"][0]["findings"]),
-	r["files"][0]["findings"][0]["severity"])')" "(True, True, 1, 'warning')"
-
-# A map of 64 x 32 on a quad of 2 x 1 gives sqrt(64 * 32 / 2) = 32 texels per unit, square ones. On a second quad of 2 x 1
-# the map's left half lies: texels are 2 / 32 by 1 / 32, so sqrt(32 * 32 / 2) per unit and twice as long as wide. The third
-# island is the first one's mirror image: they share texels and the edge x = 2, across which T is (1,0,0) and (-1,0,0).
-scene "numbers that people act on: density, stretch, frames across seams, what splitting costs"
-python3 "$ROOT/tests/support/images.py" write n.png 64 32 '(128, 128, 255)'
-printf 'newmtl m\nnorm n.png\n' >m.mtl
-{
-	printf '%s\n' "mtllib m.mtl" "usemtl m"
-	printf 'v %s\n' '0 0 0' '2 0 0' '2 1 0' '0 1 0' '4 0 0' '4 1 0' '0 5 0' '2 5 0' '2 6 0' '0 6 0'
-	printf 'vt %s\n' '0 0' '1 0' '1 1' '0 1' '0.5 0' '0.5 1'
-	printf '%s\n' "vn 0 0 1" "f 1/1/1 2/2/1 3/3/1 4/4/1" "f 2/2/1 5/1/1 6/4/1 3/3/1" "f 7/1/1 8/5/1 9/6/1 10/4/1"
-} >m.obj
-run -q --check --report=r.json m.obj
-exits 0
-validates report r.json
-is "$(value r.json '[[round(i[k][w], 4) for k in ("texel_density", "stretch") for w in ("median", "worst")]
-	for i in r["files"][0]["meshes"][0]["islands"]]')" \
-	"[[32, 32, 1, 1], [22.6274, 22.6274, 2, 2]]"
-is "$(value r.json '[(m["texture_size"], m["split_cost"]) for m in r["files"][0]["meshes"]]')" \
-	"[([64, 32], {'vertices': 2, 'bytes_each': 48, 'bytes': 96})]"
-is "$(value r.json '[(s["frame_angle_degrees"], s["edges_sharing_texels"], s["unhidden_edges"])
-	for s in r["files"][0]["meshes"][0]["seams"]]')" "[([180, 180], 1, 1)]"
-is "$(value r.json '[(f["numbers"]["frame_angle_max_degrees"], "tangents up to 180 degrees apart" in f["message"])
-	for f in r["files"][0]["findings"] if f["code"] == "UV_MIRROR_SEAM"]')" "[(180, True)]"
-sed -i 's/norm n.png/Kd 1 1 1/' m.mtl
-run -q --check --report=r.json m.obj
-is "$(value r.json '[(i["texel_density"], i["stretch"]["median"]) for i in r["files"][0]["meshes"][0]["islands"]]')" \
-	"[(None, 2), (None, 4)]"
-
 # Two squares of side 1 that cover 0.8 x 0.8 of the tiles 1001 and 1002, the second mirrored: 64 and 32 pixels a tile give
 # 51.2 and 25.6 texels per unit. With one image for both, the second lies on the first.
 scene "UDIM: islands in different tiles share no texels, and have the density of their own tile"
@@ -368,78 +328,6 @@ n.<UDIM>.png|[51.2, 25.6]|['UV_MIRROR_LONE']
 n.1001.png|[51.2, 51.2]|['UV_MIRROR_OVERLAP']
 END
 
-# A strip of three squares and its mirror image at x = 0, with one set of texture coordinates.
-strip() {
-	printf 'v %s 0\n' '0 0' '1 0' '0 1' '1 1' '0 2' '1 2' '0 3' '1 3' '0 0' '-1 0' '0 1' '-1 1' '0 2' '-1 2' '0 3' '-1 3'
-	printf 'vt %s\n' '0 0' '1 0' '0 .25' '1 .25' '0 .5' '1 .5' '0 .75' '1 .75'
-	printf 'vn 0 0 1\n%s left\n' "$1"
-	for i in 1 3 5; do echo "f $i/$i/1 $((i + 1))/$((i + 1))/1 $((i + 3))/$((i + 3))/1 $((i + 2))/$((i + 2))/1"; done
-	echo "$1 right"
-	for i in 1 3 5; do echo "f $((i + 10))/$((i + 2))/1 $((i + 11))/$((i + 3))/1 $((i + 9))/$((i + 1))/1 $((i + 8))/$i/1"; done
-}
-
-scene "mirrored halves that are objects of their own have the seam that groups have, named by both"
-strip g >g.obj
-strip o >o.obj
-strip o | sed '/^o right/,$s,/[1357]/,/8/,g' >cut.obj # texture coordinates do not meet
-for file in g:"['UV_MIRROR_SEAM', 'UV_MIRROR_OVERLAP']" o:"['UV_MIRROR_SEAM', 'UV_MIRROR_OVERLAP']"; do
-	run --check --ignore=TAN_UNUSED --report=r.json "${file%%:*}.obj"
-	is "$file $(value r.json '[f["code"] for f in r["files"][0]["findings"]]')" "$file ${file#*:}"
-	validates report r.json
-	is "$(value r.json '[(f["count"], f["numbers"]["length"]) for f in r["files"][0]["findings"] if f["code"] == "UV_MIRROR_SEAM"]')" "[(3, 3)]"
-done
-run --check o.obj
-prints 'across a seam of 3 edges: between the objects "left" and "right", length 3'
-run --check --report=r.json o.obj
-is "$(value r.json '[[s["line"] for s in f["spots"]] for f in r["files"][0]["findings"] if f["code"] == "UV_MIRROR_SEAM"]')" "[[27, 28, 29]]"
-run --check --threads=2 --report=s.json o.obj
-same r.json s.json
-run --check --report=r.json cut.obj
-is "$(value r.json '[f["code"] for f in r["files"][0]["findings"] if f["code"] == "UV_MIRROR_SEAM"]')" "[]"
-
-front() {
-	printf 'v %s 0\nvt %s\n' '0 0' '0 0' '1 0' '1 0' '1 1' '1 1' '0 1' '0 1'
-	printf 'vn 0 0 1\nvn 0 0 -1\no front\nf 1/1/1 2/2/1 3/3/1 4/4/1\n'
-}
-
-scene "front and back of a quad are a doubled sheet, cut along one diagonal or along both"
-for back in '4 3 2 1' '1 4 3 2' '2 1 4 3' '3 2 1 4'; do
-	{ front; sed 's, *\([0-9]\), \1/\1/2,g; s/^/f/' <<<"$back"; } >sheet.obj
-	run --check --report=r.json sheet.obj
-	is "$back $(value r.json '[f["code"] for f in r["files"][0]["findings"]], r["files"][0]["verdict"]')" \
-		"$back (['TAN_UNUSED', 'UV_MIRROR_OVERLAP'], 'Ready to use')"
-done
-
-scene "front and back of a sheet as two objects have no seam; with one normal they have"
-{ front; echo 'o back'; echo 'f 1/1/2 4/4/2 3/3/2 2/2/2'; } >sheet.obj
-run --check --report=r.json sheet.obj
-is "$(value r.json '[f["code"] for f in r["files"][0]["findings"] if f["code"] == "UV_MIRROR_SEAM"]')" "[]"
-sed '/^o back/,$s,/2\( \|$\),/1\1,g' sheet.obj >one.obj
-run --check --report=r.json one.obj
-is "$(value r.json '[f["count"] for f in r["files"][0]["findings"] if f["code"] == "UV_MIRROR_SEAM"]')" "[4]"
-
-scene "copies of an object at a seam, at its place or with other texture coordinates, do not hide the other half"
-for shift in 0 8; do
-	strip o | sed '/^o right/,$d' >copies.obj
-	printf 'vt %s\n' '9 0' '10 0' '9 .25' '10 .25' '9 .5' '10 .5' '9 .75' '10 .75' >>copies.obj # 9 to 16
-	for copy in {1..20}; do
-		echo "o copy$copy"
-		for i in 1 3 5; do
-			for k in $i $((i + 1)) $((i + 3)) $((i + 2)); do echo -n "$k/$((k + shift))/1 "; done | sed 's/^/f /'
-			echo
-		done
-	done >>copies.obj
-	strip o | sed -n '/^o right/,$p' >>copies.obj
-	run --check --report=r.json copies.obj
-	is "$(value r.json '[f["count"] for f in r["files"][0]["findings"] if f["code"] == "UV_MIRROR_SEAM"]')" "[3]"
-done
-
-scene "a mirrored island is looked for in other objects, those without texture coordinates left out"
-printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\no mirrored\nf 1/1 2/3 3/2\no bare\nf 1 3 2\no other\nf 1/1 2/2 3/3\n' >bare.obj
-run --check --report=r.json bare.obj
-exits 0
-is "$(value r.json '[(f["code"], f["count"]) for f in r["files"][0]["findings"] if f["code"][:9] == "UV_MIRROR"]')" "[('UV_MIRROR_OVERLAP', 1)]"
-
 scene "images in a view are measured, moved by the edit or not"
 run -q --check --report=r.json "$data/plates.glb"
 run -q --only=all --report=w.json "$data/plates.glb" out.glb
@@ -455,21 +343,6 @@ d["animations"] = [{"samplers": [], "channels": [{"sampler": 0, "target": {"path
 json.dump(d, open("animated.gltf", "w"))' "$data/transformed.gltf"
 run -q --check --report=r.json --outside=yes animated.gltf
 is "$(value r.json '"TAN_UV_TRANSFORM_ANIMATED" in json.dumps(r)')" True
-
-scene "converting with a report says what was split"
-run --report=r.json "$data/mirrored_cube.obj" out.glb
-exits 0
-exists out.glb
-validates report r.json
-is "$(value r.json '[r["files"][0]["meshes"][0]["vertices"][k] for k in ("before", "added_mirror", "after")]')" "[32, 8, 40]"
-is "$(value r.json '[f["code"] for f in r["files"][0]["findings"] if f["severity"] == "error"]')" "[]"
-
-scene "an input that cannot be read is in the report"
-echo 'f 1 2 3' >bad.obj
-run --check --report=r.json bad.obj "$data/quad.obj"
-exits 3
-validates report r.json
-is "$(value r.json '[f["failure"] is not None for f in r["files"]]')" "[True, False]"
 
 scene "a buffer that is not there is a finding of every report, with its place"
 echo '{"asset": {"version": "2.0"}, "buffers": [{"uri": "no.bin", "byteLength": 12}]}' >lost.gltf

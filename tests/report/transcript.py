@@ -27,6 +27,7 @@ import zlib
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '../support'))
 import images  # noqa: E402
+import schema  # noqa: E402
 
 WIDTHS = {'POSITION': 3, 'NORMAL': 3, 'TANGENT': 4, 'TEXCOORD_0': 2, 'TEXCOORD_1': 2, 'COLOR_0': 4}
 
@@ -134,11 +135,22 @@ def write(name, text, source):
         file.write(text if isinstance(text, bytes) else text.encode('utf-8', 'surrogateescape'))
 
 
+def faults_of(text):
+    """A line for each rule of its schema that a JSON report breaks."""
+    faults, document = [], json.loads(text, object_pairs_hook=schema.unique, parse_constant=schema.refuse)
+    with open('data/nmtan-%s.schema.json' % document['report'].replace('nmtan-', '').replace('nmtan', 'report')) as file:
+        rules = json.load(file)
+    schema.check(rules, rules, document, '', faults)
+    return ''.join('schema: %s\n' % fault for fault in faults)
+
+
 def answer(tool, words):
     words, _, part = words.partition(' | ')
     part, _, name = part.partition(' ') if part.startswith('page') else (part, '', '')
     run = subprocess.run([tool] + words.split(), capture_output=True, stdin=subprocess.DEVNULL)
     text, messages = (said.decode('utf-8', 'backslashreplace').replace('\r', '\\r') for said in (run.stdout, run.stderr))
+    if text.startswith('{\n\t"report":'):
+        messages += faults_of(text)
     if part == 'page':
         text = page_of(open(name, encoding='utf-8').read() if name else text)
     elif part:
@@ -168,7 +180,7 @@ def play(tool, parts):
         elif first.startswith('$ '):
             try:
                 text = answer(tool, first[2:]) + '\n'
-            except (KeyError, ValueError, OSError, TypeError, zlib.error) as fault:  # the output is none
+            except (LookupError, ValueError, OSError, TypeError, zlib.error) as fault:  # the output is none
                 text = repr(fault) + '\n\n'
             if text != rest:
                 old, new = rest.split('\n'), text.split('\n')
