@@ -300,7 +300,7 @@ static void report_near_degenerate(nt_check *check, nt_part *all, nt_severity se
 {
 	nt_tally *near = &all->tallies[NEAR];
 	const size_t coincident = (size_t)all->sums[NEARLY_COINCIDENT], undecided = (size_t)all->sums[UNDECIDED];
-	const double degrees = undecided < near->count ? all->greatest[BOUND] : NAN;
+	const double degrees = all->greatest[BOUND]; /* infinite if all are undecided */
 	char kinds[80] = "collinear", error[96];
 	nt_tally_number(near, "least_relative_determinant", -all->greatest[DETERMINANT]);
 	nt_tally_number(near, "greatest_error_degrees", degrees);

@@ -116,7 +116,7 @@ static void list_triangles(const nt_check *check, uint32_t *first, uint32_t *lis
 	for (size_t t = 0; t < check->surface.triangle_count; t++)
 		if (is_measured(check, t))
 			first[check->islands[t] + 2]++;
-	for (size_t i = 0; i < islands; i++)
+	for (size_t i = 1; i < islands; i++)
 		first[i + 2] += first[i + 1];
 	for (size_t t = 0; t < check->surface.triangle_count; t++)
 		if (is_measured(check, t))

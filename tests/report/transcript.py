@@ -111,7 +111,7 @@ def numbers_of(head, text):
 def page_of(text):
     text = re.sub('data:image/png;base64,([^"]*)', lambda m: 'data:image/png,%08x' % zlib.adler32(repr(images.rows(
         base64.b64decode(m[1]))).encode()), text)
-    said = [re.sub(r'("(meaning|remedy)":".{30})[^"]*', r'\1', re.search('id="data">(.*?)</script>', text, re.S)[1])]
+    said = [re.sub(r'("(meaning|remedy)":"[^"]{0,30})[^"]*', r'\1', re.search('id="data">(.*?)</script>', text, re.S)[1])]
     for head, body in re.findall('id="g-[0-9-]*">({.*?})\n(.*?)</script>', text):
         said += [head] + [' '.join(map(str, codes)) for codes in numbers_of(json.loads(head), body) if codes]
     shown = lambda x: str([(i, x.count(i)) for i in sorted(set(x))])

@@ -119,8 +119,6 @@ static void append_label(const nt_report *report, uint32_t mesh, nt_buffer *out)
 	const nt_report_mesh *m = &report->meshes[mesh];
 	if (m->place.object[0])
 		nt_buffer_text(out, m->place.object);
-	else if (m->name[0])
-		nt_buffer_format(out, "mesh \"%s\"", m->name);
 	else
 		nt_buffer_format(out, "mesh %u", mesh);
 }
