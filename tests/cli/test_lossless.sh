@@ -113,6 +113,13 @@ run --weld claims.gltf out.gltf
 exits 0
 says "its attributes differ in their number of elements"
 
+scene "a document without buffers gets none for what is not welded"
+echo '{"asset": {"version": "2.0"}, "accessors": [{"componentType": 5126, "type": "VEC3", "count": 3, "min": [0, 0, 0],
+	"max": [0, 0, 0]}], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}]}' >bare.gltf
+run --weld bare.gltf out.glb
+exits 0
+is "$(gltf out.glb '"buffers" in g')" false
+
 scene "other formats are refused, but for OBJ, whose vertices are welded always"
 run --weld "$data/quad_ascii.ply" out.glb
 exits 1

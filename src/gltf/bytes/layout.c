@@ -378,6 +378,18 @@ static nt_status settle_bounds(nt_buffer_edits *edits, nt_error *error)
 	return status;
 }
 
+/* Takes out a buffer that was added for what then stayed as it was: there is none of no bytes. */
+static void drop_unused_buffer(nt_buffer_edits *edits)
+{
+	const nt_gltf *document = edits->document;
+	nt_json_value *buffers = nt_gltf_root_member(document, "buffers");
+	if (edits->buffer_count == document->buffer_count || edits->buffers[document->buffer_count].addition_count)
+		return;
+	nt_json_remove_at(document->json, buffers, --edits->buffer_count);
+	if (!edits->buffer_count)
+		nt_json_remove(document->json, nt_json_root(document->json), "buffers");
+}
+
 /* ---- the whole ---- */
 
 nt_status nt_edits_end(nt_buffer_edits *edits, nt_error *error)
@@ -393,6 +405,8 @@ nt_status nt_edits_end(nt_buffer_edits *edits, nt_error *error)
 		status = settle_bounds(edits, error);
 	if (!status)
 		status = nt_packed_finish(edits, error);
+	if (!status)
+		drop_unused_buffer(edits);
 	bool changes = document->decoded_count > 0;
 	for (uint32_t i = 0; !status && i < edits->buffer_count; i++) {
 		nt_edited_buffer *buffer = &edits->buffers[i];

@@ -65,7 +65,6 @@ static bool find_file(void *user, const char *uri, const unsigned char **bytes, 
 /* A primitive as it is read back. */
 typedef struct part {
 	nt_mesh mesh;
-	bool is_there;
 	size_t corner; /* the next one */
 	nt_tangent_filter filter; /* of its tangents; bits 0: none */
 	float least;   /* nt_morph_deltas() */
@@ -335,15 +334,10 @@ static nt_status compare_edited(const verification *v, nt_scene *found, const nt
 }
 
 /* Primitives of a mesh that have faces are in a new document, in order. */
-static void mark_parts(const mesh_check *check, part *parts)
+static bool is_written(const mesh_check *check, size_t p)
 {
 	const nt_mesh *mesh = check->mesh;
-	parts[0].is_there = true;
-	if (check->part_count == 1 || !mesh->face_primitive)
-		return;
-	parts[0].is_there = false;
-	for (size_t f = 0; f < mesh->face_count; f++)
-		parts[mesh->face_primitive[f]].is_there = true;
+	return check->part_count > 1 && mesh->face_primitive ? mesh->primitives[p].face_count > 0 : p == 0;
 }
 
 static nt_status compare_check(const verification *v, const mesh_check *check, nt_error *error)
@@ -352,10 +346,8 @@ static nt_status compare_check(const verification *v, const mesh_check *check, n
 	alone.arena = (nt_arena){0};
 	part *parts = nt_calloc(check->part_count, sizeof *parts);
 	nt_status status = parts ? NT_OK : nt_fail_memory(error);
-	if (status == NT_OK)
-		mark_parts(check, parts);
 	for (size_t p = 0, number = check->first; p < check->part_count && status == NT_OK; p++)
-		if (parts[p].is_there || v->edited)
+		if (is_written(check, p))
 			status = read_part(&alone, number++, &parts[p], error);
 	if (status == NT_OK)
 		status = v->edited ? compare_edited(v, &alone, check->mesh, parts, error)
@@ -397,19 +389,10 @@ static nt_status list_checks(verification *v, bool *needed, nt_error *error)
 		if (v->edited ? !solved : !mesh->face_count)
 			continue;
 		v->count++;
-		if (v->edited) {
-			if (m < v->found.mesh_count)
-				needed[m] = true;
-			continue;
-		}
-		part *parts = nt_calloc(check->part_count, sizeof *parts);
-		if (!parts)
-			return nt_fail_memory(error);
-		mark_parts(check, parts);
+		number = check->first;
 		for (size_t p = 0; p < check->part_count; p++)
-			if (parts[p].is_there && number++ < v->found.mesh_count)
+			if (is_written(check, p) && number++ < v->found.mesh_count)
 				needed[number - 1] = true;
-		free(parts);
 	}
 	return NT_OK;
 }
