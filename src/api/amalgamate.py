@@ -5,7 +5,7 @@ The text of the sources stays as it is, comments too, but for what one translati
 asks:
 - a header comes where it is first included, and all but the API is static;
 - names that two files have for their own get the name of their file behind them, and macros of a C file end with it;
-- functions that nothing calls go, and what is compiled for the tool alone (NT_NO_DEADLINES is always set);
+- functions that nothing calls go, and what macros leave out that are always set (ALWAYS);
 - the kernels are compiled once for each instruction set: nmtan.c includes itself, and each time NT_PASS_NAME() makes
   other names of theirs;
 - what takes no time in a solve is compiled for size (COLD), and so are the kernels of the processors that few have.
@@ -32,6 +32,9 @@ HOT = re.compile(r'src/(base/largest|topology/(adjacency|edge_sort|weld))')
 HOT_SCALAR = re.compile(r'src/topology/representatives')
 
 LEVELS = [('@cold', COLD), ('@hot', HOT), ('@scalar', HOT_SCALAR)]
+
+# These leave out what the tool alone needs, and what is for speed where size does not matter.
+ALWAYS = r'(?:NT_NO_DEADLINES|NT_NO_HALVES|NT_SMALL_CODE)\n'
 
 # Names that headers of the system declare: a file without them may have them for its own.
 SYSTEM = {'link', 'index', 'read', 'write', 'pipe'}
@@ -95,7 +98,8 @@ class Amalgamation:
 		self.shared = {name for name in counts if (counts[name] > 1 or name in SYSTEM) and not name.startswith('nt_')}
 
 	def lines_of(self, path):
-		text = re.sub(r'#ifdef NT_NO_DEADLINES\n(.*?)#else\n.*?#endif\n', r'\1', read(path), flags=re.S)
+		text = re.sub('#ifdef ' + ALWAYS + r'(.*?)#else\n.*?#endif\n', r'\1', read(path), flags=re.S)
+		text = re.sub('#ifndef ' + ALWAYS + r'.*?#endif\n', '', text, flags=re.S)
 		for name in self.moved if path.endswith('.c') else ():
 			text = text.replace(self.moved[name][len('static '):], '')
 		lines = text.splitlines()

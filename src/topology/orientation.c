@@ -120,10 +120,6 @@ int nt_written_quad_diagonal(int solved, const float *const positions[4])
  * bumps look like dents. So it is where a file's tangents were made for texture coordinates that were turned since, or
  * are those of a triangle that rounding has turned over. */
 
-/* At most cos 120 degrees between a tangent and where u grows, and a bitangent and where v does: reversed beyond what
- * averaging does. One of them alone says little: it may be far off where u and v grow almost the same way. */
-static const double REVERSED_COSINE = -0.5;
-
 /* dP/du (of v, `which` 1) or -dP/dv (of u, 0) of a triangle, but for its length. */
 static nt_dvec3 direction(const nt_tangent_triangle *t, int which, nt_dvec3 d1, nt_dvec3 d2)
 {
@@ -134,6 +130,10 @@ static nt_dvec3 direction(const nt_tangent_triangle *t, int which, nt_dvec3 d1, 
 
 bool nt_is_reversed(const nt_tangent_triangle *t)
 {
+	/* at most cos 120 degrees between a tangent and where u grows, and a bitangent and where v does: reversed
+	 * beyond what averaging does. One of them alone says little: it may be far off where u and v grow almost the
+	 * same way */
+	const double least_reversed = -0.5;
 	const nt_dvec3 a = nt_dvec3_load(t->positions[0]);
 	const nt_dvec3 d1 = nt_dvec3_sub(nt_dvec3_load(t->positions[1]), a);
 	const nt_dvec3 d2 = nt_dvec3_sub(nt_dvec3_load(t->positions[2]), a);
@@ -151,8 +151,8 @@ bool nt_is_reversed(const nt_tangent_triangle *t)
 		const double w = t->other_w ? -t->tangents[k][3] : t->tangents[k][3];
 		nt_dvec3 bitangent = nt_dvec3_scale(w, nt_dvec3_cross(normal, tangent));
 		if (!(nt_dvec3_dot(face, normal) > 0.0) || !nt_dvec3_normalise(&bitangent) ||
-			nt_dvec3_dot(bitangent, v) > REVERSED_COSINE || !nt_dvec3_normalise(&tangent) ||
-			nt_dvec3_dot(tangent, u) > REVERSED_COSINE)
+			nt_dvec3_dot(bitangent, v) > least_reversed || !nt_dvec3_normalise(&tangent) ||
+			nt_dvec3_dot(tangent, u) > least_reversed)
 			return false;
 	}
 	return true;
