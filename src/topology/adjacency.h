@@ -32,6 +32,12 @@ typedef struct nt_fan_entry {
 	uint32_t next, previous;
 } nt_fan_entry;
 
+/* Entries of fans: orientation in bit 31; bit 30 marks a place without a corner, whose numbers differ
+ * from all others of its vertex. */
+#define NT_ENTRY_ORIENT ((uint32_t)1 << 31)
+#define NT_ENTRY_VOID ((uint32_t)1 << 30)
+#define NT_ENTRY_VERTEX (NT_ENTRY_ORIENT - 1)
+
 /* A narrow entry: the two upper and the 14 lower bits of next and, in the upper half, of previous. */
 static inline uint32_t nt_fan_narrow(nt_fan_entry entry)
 {
@@ -93,6 +99,32 @@ static inline void nt_adjacency_store(const nt_adjacency *a, uint32_t place, nt_
 		a->narrow[place] = nt_fan_narrow(entry);
 	else
 		*nt_adjacency_entry(a, place) = entry;
+}
+
+/* The place of a vertex's first entry, of one range; how many corners it has. */
+static inline uint32_t nt_adjacency_first(const nt_adjacency *a, uint32_t vertex)
+{
+	return nt_adjacency_is_narrow(a) ? vertex : a->block_begin[vertex / NT_FAN_LANES] + vertex % NT_FAN_LANES;
+}
+
+static inline uint32_t nt_adjacency_count(const nt_adjacency *a, uint32_t vertex)
+{
+	const uint32_t cursor = a->cursors[vertex];
+	return cursor & NT_CURSOR_HUB ? cursor & NT_CURSOR_PLACE : (cursor - nt_adjacency_first(a, vertex)) / a->step;
+}
+
+/* An entry, without orientation; false: a void. */
+static inline bool nt_adjacency_load(const nt_adjacency *a, uint32_t place, nt_fan_entry *entry)
+{
+	if (!nt_adjacency_is_narrow(a)) {
+		*entry = a->entries[place];
+		entry->next &= NT_ENTRY_VERTEX;
+		entry->previous &= NT_ENTRY_VERTEX;
+		return !(entry->next & NT_ENTRY_VOID);
+	}
+	const uint32_t both = a->narrow[place];
+	*entry = (nt_fan_entry){both & (NT_NARROW_LIMIT - 1), both >> 16 & (NT_NARROW_LIMIT - 1)};
+	return !(both & NT_ENTRY_VOID >> 16);
 }
 
 /* The first entry of a block. */

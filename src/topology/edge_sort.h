@@ -8,7 +8,7 @@
 #define NT_TOPOLOGY_EDGE_SORT_H
 
 #include "base/scratch.h"
-#include "topology/corners.h"
+#include "topology/adjacency.h"
 
 /* ---- representatives of vertices ---- */
 
@@ -48,6 +48,7 @@ typedef struct nt_welded_mesh {
 	                           floats behind the last one can be read */
 	size_t step;		/* floats from one row to the next */
 	const nt_box *box;	/* of all rows; NULL: not known */
+	const nt_adjacency *adjacency; /* of all triangles, in one range; NULL: there is none */
 	nt_scratch *scratch;
 } nt_welded_mesh;
 
@@ -141,6 +142,9 @@ typedef struct nt_cells {
 bool nt_cells_make(nt_scratch *scratch, nt_cell_vertex *vertices, size_t vertex_count, size_t most_corners,
 	nt_cells *cells);
 
+/* Finds the point at which a part is halved, and along which axis. False: nothing is left to halve. */
+bool nt_cells_find_middle(const nt_cells *cells, nt_part *part);
+
 /* Finds the representative of a vertex of a cell, if it is not known; and those of others. False: a limit, or out of
  * memory. */
 bool nt_cells_find(nt_cells *cells, nt_part *cell, uint32_t vertex);
@@ -178,7 +182,8 @@ enum { NT_EDGE_FEW = 512 };
 
 static inline bool nt_edge_are_few(const nt_welded_mesh *mesh)
 {
-	return mesh->triangle_count <= NT_EDGE_FEW && mesh->vertex_count <= 3 * NT_EDGE_FEW && !mesh->triangles->cuts;
+	return mesh->triangle_count <= NT_EDGE_FEW && mesh->vertex_count <= 3 * NT_EDGE_FEW && !mesh->triangles->cuts &&
+	       mesh->adjacency;
 }
 
 /* Triangles first + i with bit i, and at most so many. */

@@ -110,8 +110,7 @@ bool nt_cells_make(nt_scratch *scratch, nt_cell_vertex *vertices, size_t vertex_
 	return true;
 }
 
-/* The point at which a part is halved, and along which axis; false: nothing is left to halve. */
-static inline bool find_middle(const nt_cells *c, nt_part *p)
+bool nt_cells_find_middle(const nt_cells *c, nt_part *p)
 {
 	enum { STEP = sizeof *c->vertices / sizeof *c->vertices->position };
 	nt_box b = nothing;
@@ -215,7 +214,8 @@ bool nt_cells_find(nt_cells *c, nt_part *p, uint32_t vertex)
 	while (!(c->vertices[vertex].corners & NT_CELL_FOUND))
 		if (p->halves)
 			p = &p->halves[!(c->vertices[vertex].position[p->axis] < p->middle)];
-		else if (p->vertex_count == 1 || !find_middle(c, p)) /* each has the first of its corners here */
+		else if (p->vertex_count == 1 || !nt_cells_find_middle(c, p))
+			/* each has the first of its corners here */
 			for (uint32_t i = p->vertex_count > 1 ? p->corner_count : 1; i-- > 0;) {
 				const nt_cell_corner *corner = &c->corners[p->corners + i];
 				c->vertices[corner->vertex].corners = NT_CELL_FOUND | corner->corner;

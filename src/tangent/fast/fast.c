@@ -80,6 +80,7 @@ static nt_welded_mesh welded_mesh(const nt_fast *fast, nt_scratch *scratch)
 		.triangle_count = fast->triangle_count,
 		.vertex_count = fast->vertex_count, .positions = fast->rows->position,
 		.step = sizeof *fast->rows / sizeof *fast->rows->position, .box = fast->box,
+		.adjacency = fast->adjacency.cursors && fast->ranges.count == 1 ? &fast->adjacency : NULL,
 		.scratch = scratch};
 }
 

@@ -31,12 +31,6 @@ enum {
 	NT_TRIANGLE_UNCERTAIN = 128 /* the exact orientation, as stored too, may differ; of an "any" triangle: from 0 */
 };
 
-/* Entries of fans: orientation in bit 31; bit 30 marks a place without a corner, whose numbers differ
- * from all others of its vertex. */
-#define NT_ENTRY_ORIENT ((uint32_t)1 << 31)
-#define NT_ENTRY_VOID ((uint32_t)1 << 30)
-#define NT_ENTRY_VERTEX (NT_ENTRY_ORIENT - 1)
-
 /* Contributions of a range that have to wait for earlier ranges'. Each has a cache line of its own, which no other
  * thread writes to. */
 typedef struct nt_deferred {
