@@ -54,7 +54,6 @@ static bool read_normal(const nt_pixels *p, size_t x, size_t y, float n[3])
 
 typedef struct tally {
 	size_t counted, not_unit, blue_below, sloped, banded;
-	double sum[3];
 } tally;
 
 /* Runs of equal pixels between steps of one level, which is what rounding makes of a slope. */
@@ -100,8 +99,6 @@ static void count_pixels(const nt_pixels *p, tally *t)
 			t->counted++;
 			t->not_unit += fabsf(length - 1) > 0.1f;
 			t->blue_below += n[2] < 0 && fabsf(length - 1) <= 0.1f;
-			for (int c = 0; c < 3; c++)
-				t->sum[c] += (double)n[c];
 		}
 		if (p->bits == 8)
 			count_bands(p, y, t);

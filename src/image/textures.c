@@ -343,15 +343,12 @@ static nt_status add_result(nt_textures *t, const nt_conversion *how, unsigned l
 		.texture = {.from_heights = how->heights, .packed = how->packed, .lost = lost, .type = NT_IMAGE_OTHER}};
 	nt_texture *texture = &r->texture;
 	list_sources(t, how, texture);
-	if (how->packed || !texture->source_count) {
-		if (texture->source_count)
-			texture->type = NT_IMAGE_PNG;
+	if (how->packed || !texture->source_count)
 		return NT_OK;
-	}
+	/* what is decoded gets its type there */
 	const source *s = t->sources[how->channels[0].source];
-	const bool made = how->png || how->heights;
-	if (s->file.found != NT_IMAGE_OUTSIDE && (made || nt_image_is_carried(s->file.type)))
-		texture->type = made ? NT_IMAGE_PNG : s->file.type;
+	if (s->file.found != NT_IMAGE_OUTSIDE && nt_image_is_carried(s->file.type))
+		texture->type = s->file.type;
 	texture->failure = s->error.status ? s->error.message : NULL;
 	return NT_OK;
 }

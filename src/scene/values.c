@@ -58,7 +58,7 @@ int nt_srgb_byte(const nt_srgb *srgb, float linear)
 
 bool nt_color_mend(float color[4])
 {
-	if (color[0] * 0 + color[1] * 0 + color[2] * 0 + color[3] * 0 == 0)
+	if (isfinite(color[0]) && isfinite(color[1]) && isfinite(color[2]) && isfinite(color[3]))
 		return false;
 	color[0] = color[1] = color[2] = color[3] = 1;
 	return true;

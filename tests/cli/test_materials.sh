@@ -37,6 +37,12 @@ holes.png 4 4 255 * (x % 2)
 white.png 4 4 255
 late.png 4 4 255 if y < 3 or x < 2 else 128
 leaf.png 8 8 (9, 8, 7, 255 * (x > y))
+solid.png 4 4 (60 * x, 60 * x, 60 * x, 255)
+last.png 4 4 (99, 99, 99, 0 if x == y == 3 else 255)
+rim.png 8 8 128 if y == 0 and x < 3 else 15 if x < 4 else 240
+rims.png 8 8 128 if y == 0 and x < 4 else 15 if x < 4 else 240
+near.png 8 8 (9 * x, 9 * x, 9 * x + y % 2)
+orm.tga 8 8 (9 * x, 9 * y, x * y)
 20000x1.png 20000 1 (9, 9, 9)
 1x20000.png 1 20000 (9, 9, 9)
 END
@@ -107,14 +113,28 @@ for option in --base-color --normal-map --occlusion; do
 	done
 done
 
-scene "materials that share maps share the image"
-images write r.tga 4 4 '(x, x, x)'
-images write m.tga 4 4 '(y, y, y)'
-quad "map_Pr r.tga" "map_Pm m.tga" "newmtl second" "map_Pm ./m.tga" "map_Pr ./r.tga" "Pr 0.5"
-{ cat quad.obj; echo "usemtl second"; grep '^f' quad.obj; } >both.obj
-run both.obj both.glb
-exits 0
-is "$(gltf both.glb '[g.images.length, g.materials.length]')" "[1,2]"
+scene "materials whose maps are the same share the image, others do not"
+cp "$WORK"/images/* .
+while IFS='|' read -r count first second; do
+	mapfile -t lines < <(printf '%s\n' "$first" "newmtl second" "$second" | tr ';' '\n')
+	quad "${lines[@]}"
+	{ cat quad.obj; echo "usemtl second"; grep '^f' quad.obj; } >both.obj
+	run both.obj both.glb
+	exits 0
+	is "$first|$second: $(gltf both.glb '[g.images.length, g.materials.length]')" "$first|$second: [$count,2]"
+done <<'END'
+1|map_Pr m.tga;map_Pm x.tga|map_Pm ./x.tga;map_Pr ./m.tga;Pr 0.5
+1|map_Pr -mm 0 0.5 x.tga|map_Pr -mm -0 0.5 x.tga
+2|map_Pr -mm 0 0.5 x.tga|map_Pr -mm 0.1 0.5 x.tga
+2|map_Pr -mm 0 0.5 x.tga|map_Pr -mm 0 0.25 x.tga
+2|map_Pr -imfchan r c.png|map_Pr -imfchan g c.png
+2|Ns 1000;map_Ns 51x.png|Ns 100;map_Ns 51x.png
+2|map_Ps 51x.png|map_Pr 51x.png
+2|map_Pr small.png;map_Pm flat.png|map_Pr -clamp on small.png;map_Pm -clamp on flat.png
+2|map_Pr x.tga;map_Pm m.tga|map_Pr m.tga;map_Pm x.tga
+2|map_Bump -bm 2 10x.png|map_Bump -bm 3 10x.png
+2|map_Bump 10x.png|map_Bump -clamp on 10x.png
+END
 
 scene "damaged values without which a material can do are not used, with a finding"
 quad "Ka a b c" "Ns big" "Ni"

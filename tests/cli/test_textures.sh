@@ -113,6 +113,9 @@ says "j.jpg became j.png"
 is "$(gltf quad.glb 'g.images[0].mimeType')" image/png
 images embedded quad.glb 0 made.png
 is "$(images rows made.png | cut -c1-24)" "[[[100],[100],[100],[100"
+quad "map_Pr j.jpg" # which has all channels that are looked at
+run --textures=png quad.obj quad.glb
+is "$(gltf quad.glb 'g.images[0].mimeType')" image/png
 
 scene "a damaged image is left out with a finding"
 images write n.tga 32 16 "$bumps"
@@ -595,6 +598,20 @@ same made.png up.png
 run --flip-green=on quad.obj quad.glb
 says "up.png became up-green-up.png"
 
+scene "green is turned in every depth, beside every channel"
+while IFS='|' read -r pixel turned; do
+	images write n.png 4 4 "$pixel"
+	quad 'norm n.png'
+	run --flip-green=on quad.obj quad.glb
+	images embedded quad.glb 0 made.png
+	is "$(images rows made.png 'rows[1][2]')" "$turned"
+done <<'END'
+(10 * x, 20 * y, 200)|[20, 235, 200]
+(10 * x, 20 * y, 200, 255 - x)|[20, 235, 200, 253]
+("16", 10 * x, 20 * y, 60000)|[20, 65515, 60000]
+("16", 10 * x, 20 * y, 60000, 65535 - x)|[20, 65515, 60000, 65533]
+END
+
 # The upper half was made for DirectX: no turn is right for all of it.
 scene "a map that is green down in places is left as it is, and the report has the blocks that say so"
 hills mixed.png '(1 if y >= 48 else -1)'
@@ -822,6 +839,7 @@ while IFS='|' read -r code width formula; do
 done <<END
 info      NMAP_CONSTANT|8|(131, 124, 255)
 warning   NMAP_CONSTANT|8|(140, 128, 254)
+warning   NMAP_CONSTANT|8|(128, 140, 254)
 warning   NMAP_CONSTANT|8|(100, 128, 120)
 NMAP_OBJECT_SPACE|64|tuple(int(127.5 + 127 * v) for v in $sphere)
 NMAP_NOT_UNIT|64|(128 + x, 128 + y, 255)

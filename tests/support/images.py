@@ -3,8 +3,8 @@
 """Images for tests, with nothing but zlib, and libwebp for WebP.
 
     images.py write FILE WIDTH HEIGHT EXPRESSION   a TGA, BMP, TIFF, WebP (with loss if FILE begins with "lossy") or PNG by its ending; EXPRESSION of x, y (rows down), w, h and
-                                                   math gives (r, g, b) of bytes, in a PNG (r, g, b, a), too, a grey byte, or ("16", grey) of
-                                                   16 bits
+                                                   math gives (r, g, b) of bytes, in a PNG (r, g, b, a), too, a grey byte, or ("16", grey or
+                                                   r, g, b and perhaps a) of 16 bits
     images.py rows FILE [EXPRESSION]               the samples of a PNG as JSON, row by row; or an expression over the rows
     images.py tga FILE.png FILE.tga                the same picture
     images.py jpegtif FILE.jpg FILE.tif            the same grey picture, 8 x 8; tables apart from the scan, as TIFFs have them
@@ -25,14 +25,14 @@ def chunk(kind, data):
 def png(width, height, pixel):
     first = pixel(0, 0)
     wide = isinstance(first, tuple) and first[0] == "16"
-    grey = wide or not isinstance(first, tuple)
+    kind = {1: 0, 3: 2, 4: 6}[1 if not isinstance(first, tuple) else len(first) - wide]
     raw = bytearray()
     for y in range(height):
         raw.append(0)
         for x in range(width):
             p = pixel(x, y)
-            raw += struct.pack(">H", p[1]) if wide else bytes([p] if grey else p)
-    header = struct.pack(">IIBBBBB", width, height, 16 if wide else 8, 0 if grey else {3: 2, 4: 6}[len(first)], 0, 0, 0)
+            raw += struct.pack(">%dH" % (len(p) - 1), *p[1:]) if wide else bytes(p if kind else [p])
+    header = struct.pack(">IIBBBBB", width, height, 16 if wide else 8, kind, 0, 0, 0)
     return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(bytes(raw))) +
             chunk(b"IEND", b""))
 

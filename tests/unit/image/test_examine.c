@@ -170,15 +170,81 @@ TEST(shares_are_counted)
 	assert_false(facts.object_space);
 }
 
-/* A slope that changes by one level in 16 pixels. */
+/* Runs of pixels, the same in each row: red, green and length. A band has steps of one level at both ends and six
+ * pixels or more; its share is that of all pixels that are part of a slope, as (128, 128) between jumps is not. */
 TEST(wide_steps_are_bands)
 {
-	nt_pixels p = make(hills, 1, 8);
-	assert_true(facts_of(p).banded < 0.1);
-	p = make(flat, 1, 8);
-	for (size_t i = 0; i < SIDE * SIDE; i++)
-		((uint8_t *)p.samples)[3 * i] = (uint8_t)(120 + i % SIDE / 16);
-	assert_true(facts_of(p).banded > 0.7);
+	static const struct {
+		int runs[8][3];
+		double share;
+	} rows[] = {
+		{{{128, 128, 6}, {129, 128, 6}, {130, 128, 6}, {130, 129, 6}}, 12. / 24},
+		{{{130, 128, 6}, {129, 128, 6}, {128, 128, 6}}, 6. / 18},
+		{{{129, 128, 5}, {130, 128, 5}, {131, 128, 5}}, 0},
+		{{{120, 128, 8}, {122, 128, 8}, {123, 128, 8}, {125, 128, 8}}, 0},
+		{{{128, 120, 8}, {128, 122, 8}, {128, 123, 8}, {128, 125, 8}}, 0},
+		{{{128, 128, 8}, {150, 128, 8}, {140, 128, 8}, {141, 128, 8}, {142, 128, 8}, {128, 150, 8},
+			{128, 128, 8}}, 8. / 40},
+	};
+	for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+		nt_pixels p;
+		nt_error error;
+		uint32_t width = 0;
+		for (size_t r = 0; r < 8; r++)
+			width += (uint32_t)rows[i].runs[r][2];
+		assert_int_equal(nt_pixels_create(&p, width, 2, 3, 8, &error), NT_OK);
+		uint8_t *to = p.samples;
+		for (size_t r = 0; r < 16; r++) {
+			const int *run = rows[i].runs[r % 8];
+			for (int k = 0; k < run[2]; k++, to += 3)
+				memcpy(to, (uint8_t[]){(uint8_t)run[0], (uint8_t)run[1], 250}, 3);
+		}
+		assert_true(facts_of(p).banded == rows[i].share);
+	}
+}
+
+/* Pixels that alpha leaves out may be anything. */
+TEST(clear_pixels_do_not_count)
+{
+	for (unsigned bits = 8; bits <= 16; bits += 8) {
+		nt_pixels from = make(hills, 1, bits), p;
+		nt_error error;
+		assert_int_equal(nt_pixels_create(&p, SIDE, SIDE, 4, bits, &error), NT_OK);
+		const size_t bytes = bits / 8;
+		for (size_t i = 0; i < SIDE * SIDE; i++) {
+			char *to = (char *)p.samples + 4 * bytes * i;
+			memcpy(to, (char *)from.samples + 3 * bytes * i, 3 * bytes);
+			memset(to + 3 * bytes, 255, bytes);
+			if (i % SIDE < SIDE / 4)
+				memset(to, 0, 4 * bytes);
+		}
+		nt_pixels_free(&from);
+		const nt_normal_facts facts = facts_of(p);
+		assert_true(facts.not_unit == 0 && facts.blue_below == 0);
+		assert_int_equal(facts.green, NT_GREEN_UP);
+	}
+}
+
+/* One in four pixels points into the surface: no mean has slopes then, of an image that is halved to be looked at
+ * either. */
+TEST(what_is_no_surface_says_nothing)
+{
+	static const uint32_t sides[][2] = {{SIDE, SIDE}, {1100, 100}};
+	for (size_t s = 0; s < 2; s++)
+		for (int holes = 0; holes < 2; holes++) {
+			nt_pixels from = make(hills, 1, 8), p;
+			nt_error error;
+			assert_int_equal(nt_pixels_create(&p, sides[s][0], sides[s][1], 3, 8, &error), NT_OK);
+			for (size_t i = 0; i < (size_t)p.width * p.height; i++) {
+				const size_t x = i % p.width, y = i / p.width;
+				uint8_t *to = (uint8_t *)p.samples + 3 * i;
+				memcpy(to, (uint8_t *)from.samples + 3 * (y % SIDE * SIDE + x % SIDE), 3);
+				if (holes && x % 2 && y % 2)
+					to[2] = 0;
+			}
+			nt_pixels_free(&from);
+			assert_int_equal(facts_of(p).green, holes ? NT_GREEN_UNKNOWN : NT_GREEN_UP);
+		}
 }
 
 TEST(examining_without_memory_is_an_error)

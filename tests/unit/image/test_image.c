@@ -448,6 +448,26 @@ TEST(decode_refuses_sizes_before_it_asks_for_memory)
 	assert_string_equal(error.message, "TIFF: 110 bytes cannot hold 5 x 4099 pixels");
 }
 
+/* As --help says it: 256 pixels for each byte, and 2^34 of small files; of one image 64 times as many for each byte. */
+TEST(pixels_are_held_against_bytes)
+{
+	static const struct {
+		uint64_t pixels, most, bytes;
+		bool one, all;
+	} rows[] = {{16384 * 9 + 16383, 0, 9, true, true}, {16384 * 10, 0, 9, false, true},
+		{16384 * 10, 16384 * 10, 9, true, true},
+		{UINT64_C(1) << 34, 0, 1 << 26, true, true}, {(UINT64_C(1) << 34) + 1, 0, 1 << 26, true, false},
+		{(UINT64_C(1) << 34) + 256, 0, (1 << 26) + 1, true, true},
+		{(UINT64_C(1) << 34) + 257, 0, (1 << 26) + 1, true, false}, {101, 100, 1 << 20, true, false}};
+	for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+		nt_error error;
+		assert_int_equal(nt_check_image(rows[i].pixels, rows[i].most, rows[i].bytes, NULL, &error),
+			rows[i].one ? NT_OK : NT_ERROR_LIMIT);
+		assert_int_equal(nt_check_pixels(rows[i].pixels, rows[i].most, rows[i].bytes, &error),
+			rows[i].all ? NT_OK : NT_ERROR_LIMIT);
+	}
+}
+
 /* A JPEG of SIDE x SIDE black pixels whose scan has the blocks' first coefficients alone, or all; malloc'ed. */
 enum { SIDE = 2048 };
 

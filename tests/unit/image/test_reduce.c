@@ -85,6 +85,10 @@ TEST(reduce_refuses_what_is_no_image_and_lacks_memory)
 	const unsigned char none[] = "no image";
 	assert_int_equal(nt_image_reduce(none, sizeof none, 16, &jpeg, &size, &error), NT_ERROR_UNSUPPORTED);
 	assert_null(jpeg);
+	/* 8192 x 8193 */
+	const unsigned char large[18 + 8192] = {[2] = 2, [13] = 0x20, [14] = 1, [15] = 0x20, [16] = 24};
+	assert_int_equal(nt_image_reduce(large, sizeof large, 16, &jpeg, &size, &error), NT_ERROR_UNSUPPORTED);
+	assert_string_equal(error.message, "an image of 8192 x 8193 pixels");
 	nt_pixels whole = make_halves(64, 64, 3, 8);
 	unsigned char *source;
 	assert_int_equal(nt_encode_jpeg(&whole, 90, &source, &length, &error), NT_OK);

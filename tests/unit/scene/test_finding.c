@@ -3,12 +3,19 @@
 #include <time.h>
 #include "scene/finding.h"
 
-static void add(nt_finding_list *list, nt_code code, const char *object, size_t count, const char *detail)
+static void add_in(nt_finding_list *list, nt_code code, const char *file, const char *object, size_t count,
+	const char *detail)
 {
 	nt_place place;
 	nt_place_clear(&place);
+	snprintf(place.file, sizeof place.file, "%s", file);
 	snprintf(place.object, sizeof place.object, "%s", object);
 	nt_finding_add(list, code, &place, count, "%s", detail);
+}
+
+static void add(nt_finding_list *list, nt_code code, const char *object, size_t count, const char *detail)
+{
+	add_in(list, code, "", object, count, detail);
 }
 
 TEST(equal_findings_are_one_with_the_sum_of_their_counts)
@@ -29,6 +36,8 @@ TEST(equal_findings_are_one_with_the_sum_of_their_counts)
 	nt_finding_add(&list, NT_CODE_TAN_ZERO, NULL, 3, NULL);
 	assert_int_equal(list.count, 6);
 	assert_int_equal(list.items[5].count, 5);
+	add_in(&list, NT_CODE_TAN_ZERO, "a.mtl", "a", 1, "x");
+	assert_int_equal(list.count, 7);
 	nt_finding_list_free(&list);
 	assert_int_equal(list.count, 0);
 }

@@ -34,6 +34,13 @@ TEST(values_are_those_of_the_standard)
 		assert_true(fabsf(nt_srgb_from_linear(pairs[i][1]) - pairs[i][0]) < 1e-5f);
 	}
 	assert_true(isnan(nt_linear_from_srgb(&srgb, NAN)));
+	for (int k = 0; k < 4; k++) {
+		float color[4] = {0.5f, 0.5f, 0.5f, 0.5f};
+		assert_false(nt_color_mend(color));
+		color[k] = k % 2 ? NAN : -INFINITY;
+		assert_true(nt_color_mend(color));
+		assert_true(color[0] == 1 && color[1] == 1 && color[2] == 1 && color[3] == 1);
+	}
 	float colors[] = {0.5f, 1, 0, 0.5f, 0, 0, INFINITY, 0.5f, 0, 0, 0, NAN};
 	nt_scene scene;
 	nt_scene_init(&scene, "t");
@@ -42,6 +49,7 @@ TEST(values_are_those_of_the_standard)
 		assert_true(colors[i] == 1);
 	assert_int_equal(scene.findings.count, 1);
 	assert_int_equal(scene.findings.items[0].count, 2);
+	assert_string_equal(scene.findings.items[0].detail, "2 not finite, the first of vertex 1");
 	nt_finding_list_free(&scene.findings);
 	nt_scene_free(&scene);
 	assert_true(colors[0] == nt_linear_from_srgb(&srgb, 0.5f) && colors[1] == 1 && colors[2] == 0 &&
