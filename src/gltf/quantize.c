@@ -85,8 +85,6 @@ static double angle_between(nt_dvec3 a, nt_dvec3 b)
 void nt_precision_round(nt_precision precision, float *tangents, size_t count, nt_rounding *cost)
 {
 	const double most = kinds[precision].most;
-	if (precision <= NT_PRECISION_FLOAT)
-		return;
 	for (size_t i = 0; i < count; i++) {
 		float *tangent = tangents + 4 * i;
 		nt_dvec3 t = nt_dvec3_load(tangent);

@@ -62,7 +62,7 @@ uint32_t nt_precision_component_type(nt_precision precision);
  * Rounds tangents to what the integers can say; afterwards they hold what a reader will decode. w becomes
  * +-1 exactly. Takes the one with the least angle of the up to eight integer vectors around T, if its length is
  * within what the Khronos validator lets pass. A tangent that the integers represent stays as it is. Tangents without
- * a direction become zero. NT_PRECISION_FLOAT changes nothing.
+ * a direction become zero. Not for NT_PRECISION_FLOAT.
  *
  *   tangents  [count][4]
  *   cost  what the rounding does to the directions is added to it; may be NULL
@@ -95,7 +95,7 @@ typedef struct nt_tangent_filter {
  *
  *   tangents  [count][4]
  *   stored  [count * nt_precision_bytes()], what the filter will be applied to
- *   values  the same size, what it gives; may be `stored` where there is none
+ *   values  the same size, what it gives; `stored` where there is none
  *   cost  may be NULL
  *
  * Returns NT_OK or what opening the module of meshoptimizer gives.

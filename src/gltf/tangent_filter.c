@@ -162,8 +162,6 @@ nt_status nt_tangents_store(const nt_tangent_filter *f, float *tangents, size_t 
 	}
 	nt_precision_round(f->precision, tangents, count, cost);
 	nt_precision_encode(f->precision, tangents, count, stored);
-	if (values != stored)
-		memcpy(values, stored, count * nt_precision_bytes(f->precision));
 	return NT_OK;
 }
 

@@ -4,7 +4,7 @@
 
 A row is a change of the document, the place and the words of the message; without a place the file is converted. Rows of
 JSON are the text of a value, how many bytes of it are read before the fault, and the words; without words the output spells it
-alike. Rows of MEANT are documents in order.
+alike. Rows of BYTES are changes of a .glb, with the byte of the message. Rows of MEANT are documents in order.
 """
 import json
 import os
@@ -45,6 +45,14 @@ a[2]['type'] = 'SCALAR'|/meshes/0/primitives/0/attributes/TEXCOORD_0|accessor 2 
 a[1]['count'] = 5|/meshes/0/primitives/0/attributes/NORMAL|accessor 1 has 5 elements, POSITION has 6
 a[2]['count'] = 5|/meshes/0/primitives/0/attributes/TEXCOORD_0|accessor 2 has 5 elements, POSITION has 6
 a[3]['count'] = 5|/accessors/3|5 elements, but other attributes of the same primitives have 6
+another(p, 5)|/meshes/0/primitives/1|5 vertices, but a primitive that shares attributes with it has 6
+another(p, 6)
+p['attributes']['TANGENT'] = 'x'
+p['attributes']['TANGENT'] = 0
+p['attributes']['TANGENT'] = 3; a[3]['count'] = 5
+a[p['indices']].update(componentType=5121, bufferView=len(v)); numbers([0] * 11 + [255])|/accessors/9|index 11 is 255 (reserved), there are 6 vertices
+a[p['indices']].update(componentType=5123, bufferView=len(v)); numbers([0] * 22 + [255] * 2); g['extensionsUsed'] = ['KHR_mesh_primitive_restart']|/accessors/9|index 11 restarts the primitive
+a[p['indices']].update(componentType=5121, bufferView=len(v)); numbers([0] * 11 + [6])|/accessors/9|index 11 is 6, there are 6 vertices
 v[0]['byteStride'] = 8|/accessors/0|elements of 12 bytes, but bufferView 0 has a byteStride of 8
 v[0]['byteStride'] = 16|/accessors/0|6 elements end at byte 92 of bufferView 0, which has 72
 v[0]['byteStride'] = 256|/accessors/0|6 elements end at byte 1292 of bufferView 0, which has 72
@@ -121,6 +129,25 @@ draco(p, bufferView='x')|/meshes/0/primitives/0/extensions/KHR_draco_mesh_compre
 draco(p, bufferView=0)|/bufferViews/0|not Draco data
 draco(p, bufferView=0); p['mode'] = 5|/meshes/0/primitives/0/extensions/KHR_draco_mesh_compression|compressed primitive of mode 5, expected 4
 draco(p, bufferView=0, attributes=3)|/bufferViews/0|not Draco data
+"""
+
+# b: the bytes of a .glb, of which j have the JSON and c the rest; ended(): the same with the length of a file in its head.
+BYTES = r"""
+b = b[:8]|8|the file ends within the 12-byte GLB header
+b = b[:8] + u32(19) + b[12:]|8|declares 19 bytes, too few for a JSON chunk
+b = b[:12] + u32(len(b)) + b[16:]|12|a GLB chunk declares
+b = b[:16] + u32(5) + b[20:]|16|the first GLB chunk has type 0x00000005, expected JSON
+b = ended(b + bytes(7))|len(b) - 7|7 bytes left, a GLB chunk begins with 8
+b = ended(b + b'abc')|len(b) - 3|3 bytes left, a GLB chunk begins with 8
+b = ended(b + bytes(3))
+b = b + b'behind the end'
+b = ended(chunk(JSON, bytes(8)) + c)|12|the JSON chunk of the GLB is empty
+b = ended(chunk(JSON, j + bytes(4)) + c)
+b = ended(chunk(JSON, j + b'    ') + c)
+b = ended(chunk(JSON, j.replace(b'"asset"', b'"asset')) + c)|20 + j.index(b'"asset"') + len(b'"asset: {"')|expected ':'
+b = ended(chunk(JSON, j) + chunk(7, b'more') + c)|/buffers/0|the buffer has no uri and there is no BIN chunk for it
+b = ended(chunk(JSON, j) + c + chunk(7, b'more') + chunk(JSON, b'{}  ') + c)
+b = b'7'||an integer, expected an object
 """
 
 # A row has a change, what a report says of the primitive then, and the value. Texture 0 is a normal map.
@@ -232,17 +259,49 @@ def make():
             g['buffers'].append({'byteLength': len(numbers), 'uri': uri})
             v.append({'buffer': len(g['buffers']) - 1, 'byteLength': len(numbers)})
             return {'count': len(numbers), 'indices': {'bufferView': len(v) - 1, 'componentType': 5121}, 'values': {'bufferView': 0}}
+        def numbers(bytes_):
+            sparse(bytes_)
+
+        def another(primitive, count):
+            """A primitive with vertices of its own, but for one attribute that no load takes."""
+            own = {n: len(a) + i for i, n in enumerate(('POSITION', 'NORMAL', 'TEXCOORD_0'))}
+            a.extend([dict(a[primitive['attributes'][n]], count=count) for n in own])
+            a[own['POSITION']]['byteOffset'] = a[own['NORMAL']]['byteOffset'] = 0
+            numbers([0, 1, 2])
+            a.append({'componentType': 5121, 'count': 3, 'type': 'SCALAR', 'bufferView': len(v) - 1})
+            g['meshes'][0]['primitives'].append({'attributes': {**own, '_ID': primitive['attributes']['_ID']},
+                                                 'indices': len(a) - 1, 'material': 0})
+
         def pack(view, **members):
             view['extensions'] = {'EXT_meshopt_compression': {'buffer': 0, 'byteOffset': 0, 'byteLength': 72, 'byteStride': 12,
                                                               'count': 6, 'mode': 'ATTRIBUTES', **members}}
 
         def draco(primitive, **members):
             primitive['extensions'] = {'KHR_draco_mesh_compression': {'attributes': {'POSITION': 0}, **members}}
-        exec(change, {'g': g, 'a': a, 'v': v, 'p': p, 'sparse': sparse, 'pack': pack, 'draco': draco})
+        exec(change, {'g': g, 'a': a, 'v': v, 'p': p, 'sparse': sparse, 'pack': pack, 'draco': draco,
+                      'numbers': numbers, 'another': another})
         name = 'bad/row%03d.gltf' % number
         expected[name] = message, change, None
         with open(name, 'w', encoding='utf-8') as file:
             json.dump(g, file)
+    g = json.loads(text)
+    rest = table.base64.b64decode(g['buffers'][0].pop('uri').split(',')[1])
+    scope = {'JSON': 0x4E4F534A, 'u32': lambda n: n.to_bytes(4, 'little')}
+    scope['chunk'] = lambda kind, data: scope['u32'](len(data)) + scope['u32'](kind) + data
+    scope['ended'] = lambda data: b'glTF' + scope['u32'](2) + scope['u32'](
+        len(data) + 12 * (data[:4] != b'glTF')) + data[12 * (data[:4] == b'glTF'):]
+    scope['j'] = json.dumps(g).encode()
+    scope['j'] += b' ' * (-len(scope['j']) % 4)
+    scope['c'] = scope['chunk'](0x004E4942, rest + bytes(-len(rest) % 4))
+    for number, (change, *message) in enumerate(rows_of(BYTES)):
+        scope['b'] = scope['ended'](scope['chunk'](scope['JSON'], scope['j']) + scope['c'])
+        exec(change, scope)
+        if message and message[0][:1] not in ('', '/'):
+            message[0] = 'at byte %d' % eval(message[0], scope)
+        name = 'bad/bytes%02d.%s' % (number, 'glb' if scope['b'][:4] == b'glTF' else 'gltf')
+        expected[name] = message, change, None
+        with open(name, 'wb') as file:
+            file.write(scope['b'])
     begin = text[:-1] + ', "extras": '
     for number, (value, *message) in enumerate(rows_of(TEXTS)):
         if message:
@@ -300,7 +359,7 @@ def main():
         output = 'good' + name[3:]
         if message:
             place, words = message
-            if not any(line.startswith(place + ': ') and words in line for line in lines) or os.path.exists(output):
+            if not any(line.startswith(place and place + ': ') and words in line for line in lines) or os.path.exists(output):
                 faults.append('%s: %s, expected %s: %s' % (change, lines, place, words))
         elif not os.path.exists(output):
             faults.append('%s: %s' % (change, lines))
