@@ -180,7 +180,8 @@ static void advise(const nt_file *file, size_t offset, size_t size, int advice)
 		madvise((void *)(uintptr_t)(file->data + begin), offset + size - begin, advice);
 }
 
-void nt_file_fetch(const nt_file *file, size_t offset, size_t size)
+/* Brings the pages of a range in at once, which costs less than a fault for every few of them. */
+static void fetch(const nt_file *file, size_t offset, size_t size)
 {
 #ifdef MADV_POPULATE_READ
 	advise(file, offset, size, MADV_POPULATE_READ);
@@ -230,8 +231,8 @@ nt_status nt_same_bytes(const char *a, const char *b, bool *same, nt_error *erro
 		*same = x.size == y.size;
 		for (size_t at = 0, part; *same && at < x.size; at += part) {
 			part = x.size - at < COMPARED_BYTES ? x.size - at : COMPARED_BYTES;
-			nt_file_fetch(&x, at, part);
-			nt_file_fetch(&y, at, part);
+			fetch(&x, at, part);
+			fetch(&y, at, part);
 			*same = memcmp(x.data + at, y.data + at, part) == 0;
 			nt_file_release(&x, at, part);
 			nt_file_release(&y, at, part);
@@ -253,7 +254,7 @@ nt_status nt_digest_of_file(const char *path, char text[NT_DIGEST_TEXT], nt_erro
 	nt_digest *digest = nt_digest_create();
 	for (size_t at = 0, part; digest && at < file.size; at += part) {
 		part = file.size - at < COMPARED_BYTES ? file.size - at : COMPARED_BYTES;
-		nt_file_fetch(&file, at, part);
+		fetch(&file, at, part);
 		nt_digest_add(digest, file.data + at, part);
 		nt_file_release(&file, at, part);
 	}

@@ -91,10 +91,8 @@ void nt_file_close(nt_file *file);
 /* Bytes of the caller, as a file. */
 nt_file nt_file_of_bytes(const unsigned char *bytes, size_t size);
 
-/* Brings the pages of a range of a mapped file in at once, which costs less than a fault for every few of them,
- * and lets go of them again, so that a file that is copied does not fill the memory. Nothing is lost: what is
- * read afterwards comes back. For files that are not mapped, and kernels that cannot, nothing happens. */
-void nt_file_fetch(const nt_file *file, size_t offset, size_t size);
+/* Lets go of the pages of a range of a mapped file, so that a file that is copied does not fill the memory. Nothing is
+ * lost: what is read afterwards comes back. For files that are not mapped, and kernels that cannot, nothing happens. */
 void nt_file_release(const nt_file *file, size_t offset, size_t size);
 
 /* Whether the file is as long as when it was opened: reading what is gone gives zeros. */
@@ -214,10 +212,9 @@ nt_trace *nt_trace_use(nt_trace *trace);
  */
 void nt_trace_note(nt_trace_kind kind, const char *path, const char *found, const struct stat *info);
 
-/* Times in nanoseconds since 1970: of the last change of a file's bytes, and of its inode; the present one. */
+/* Times in nanoseconds since 1970: of the last change of a file's bytes, and of its inode. */
 int64_t nt_trace_modified(const struct stat *info);
 int64_t nt_trace_changed(const struct stat *info);
-int64_t nt_trace_now(void);
 
 /* Forgets what was written, for a run that is to be done again. */
 void nt_trace_forget_written(nt_trace *trace);

@@ -114,10 +114,6 @@ const char *nt_sink_name(const nt_sink *sink, bool staging);
 const char *nt_sink_digest(const nt_sink *sink);
 const char *nt_sink_digest_before(const nt_sink *sink);
 
-/* The staging name of data for `name`: "a.new-0123456789abcdef.bin" for "a.bin".
- * Appended. */
-void nt_output_staging_name(nt_buffer *text, const char *name, const char *digest);
-
 /* Says before the first byte how many there will be: a large file gets its room on the disk at once where that can be
  * had. Neither less nor more is an error. */
 void nt_sink_expect(nt_sink *sink, uint64_t size);

@@ -89,11 +89,6 @@ static void append_name(nt_buffer *text, const char *name, const char *infix, co
 	nt_buffer_text(text, made);
 }
 
-void nt_output_staging_name(nt_buffer *text, const char *name, const char *digest)
-{
-	append_name(text, name, for_the_time_being, digest, 0);
-}
-
 static bool is_name(const char *candidate, const char *name, const char *infix, const char *digest)
 {
 	char made[NAME_ROOM];

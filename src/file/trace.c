@@ -172,7 +172,7 @@ int64_t nt_trace_changed(const struct stat *info)
 	return nanoseconds(info->st_ctim);
 }
 
-int64_t nt_trace_now(void)
+static int64_t now_in_nanoseconds(void)
 {
 	struct timespec now;
 	clock_gettime(CLOCK_REALTIME, &now);
@@ -218,7 +218,7 @@ void nt_trace_note(nt_trace_kind kind, const char *path, const char *found, cons
 	if (!trace)
 		return;
 	nt_trace_file file = {.path = (char *)(uintptr_t)path, .kind = kind, .found = (char *)(uintptr_t)found,
-		.noted = nt_trace_now()};
+		.noted = now_in_nanoseconds()};
 	if (info) {
 		file.size = (uint64_t)info->st_size;
 		file.inode = (uint64_t)info->st_ino;

@@ -25,7 +25,8 @@ static int by_key(const void *a, const void *b)
 	return x->index < y->index ? -1 : x->index > y->index;
 }
 
-nt_keyed *nt_list_keys(const void *things, size_t count, nt_key_of key_of, size_t *listed)
+/* The things that have keys, ascending, equal ones in their order; the caller frees the list. NULL: out of memory. */
+static nt_keyed *list_keys(const void *things, size_t count, nt_key_of key_of, size_t *listed)
 {
 	nt_keyed *list = nt_alloc(count, sizeof *list);
 	*listed = 0;
@@ -50,7 +51,11 @@ static size_t skip_to(const nt_keyed *list, size_t count, size_t at, uint64_t ke
 	return at;
 }
 
-void nt_pair_keys(nt_pairs *pairs, const nt_keyed *old, size_t old_count, const nt_keyed *new, size_t new_count)
+/*
+ * Pairs what has no partner yet. Equal keys are paired one by one in their order, in time that many equal ones do not
+ * lengthen, and a much longer old list hardly. pairs->taken NULL: none is.
+ */
+static void pair_keys(nt_pairs *pairs, const nt_keyed *old, size_t old_count, const nt_keyed *new, size_t new_count)
 {
 	bool *taken = pairs->taken;
 	for (size_t a = 0, b = 0; b < new_count; b++) {
@@ -68,7 +73,8 @@ void nt_pair_keys(nt_pairs *pairs, const nt_keyed *old, size_t old_count, const 
 	}
 }
 
-bool nt_pairs_begin(nt_pairs *pairs, size_t new_count)
+/* Every new thing without a partner. False: out of memory. */
+static bool begin_pairs(nt_pairs *pairs, size_t new_count)
 {
 	pairs->partners = nt_alloc(new_count, sizeof *pairs->partners);
 	for (size_t i = 0; pairs->partners && i < new_count; i++)
@@ -80,14 +86,14 @@ bool nt_pair(nt_pairs *pairs, const void *old, size_t old_count, const void *new
 	const nt_key_of keys[2])
 {
 	pairs->taken = nt_calloc(old_count, sizeof *pairs->taken);
-	bool made = nt_pairs_begin(pairs, new_count) && pairs->taken;
+	bool made = begin_pairs(pairs, new_count) && pairs->taken;
 	for (int i = 0; i < 2 && keys[i] && made; i++) {
 		size_t counts[2] = {0};
-		nt_keyed *lists[2] = {nt_list_keys(old, old_count, keys[i], &counts[0]),
-			nt_list_keys(new, new_count, keys[i], &counts[1])};
+		nt_keyed *lists[2] = {list_keys(old, old_count, keys[i], &counts[0]),
+			list_keys(new, new_count, keys[i], &counts[1])};
 		made = lists[0] && lists[1];
 		if (made)
-			nt_pair_keys(pairs, lists[0], counts[0], lists[1], counts[1]);
+			pair_keys(pairs, lists[0], counts[0], lists[1], counts[1]);
 		free(lists[0]);
 		free(lists[1]);
 	}
@@ -185,7 +191,7 @@ nt_status nt_baseline_read(nt_baseline *baseline, const char *text, size_t size,
 	if (!status && baseline->count)
 		qsort(baseline->entries, baseline->count, sizeof *baseline->entries, by_file);
 	if (!status) {
-		baseline->geometries = nt_list_keys(baseline->entries, baseline->count, geometry_of,
+		baseline->geometries = list_keys(baseline->entries, baseline->count, geometry_of,
 			&baseline->geometry_count);
 		status = baseline->geometries ? NT_OK : nt_fail_memory(error);
 	}
@@ -234,10 +240,10 @@ bool nt_baseline_apply(const nt_baseline *baseline, nt_report *report)
 		made = nt_pair(&pairs, old, old_count, new, count, (const nt_key_of[]){fingerprint_of, geometry_of});
 	} else if (made) {
 		size_t listed;
-		nt_keyed *keys = nt_list_keys(new, count, geometry_of, &listed);
-		made = keys && nt_pairs_begin(&pairs, count);
+		nt_keyed *keys = list_keys(new, count, geometry_of, &listed);
+		made = keys && begin_pairs(&pairs, count);
 		if (made)
-			nt_pair_keys(&pairs, baseline->geometries, baseline->geometry_count, keys, listed);
+			pair_keys(&pairs, baseline->geometries, baseline->geometry_count, keys, listed);
 		free(keys);
 	}
 	for (size_t i = 0; made && i < count; i++)
