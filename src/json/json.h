@@ -156,4 +156,8 @@ nt_status nt_json_write(const nt_json *document, nt_json_put_text take, void *us
 /* The length of that text. */
 nt_status nt_json_measure(const nt_json *document, uint64_t *size, nt_error *error);
 
+/* The escape of a byte in such a string, and its length; 0: the byte stands for itself. */
+enum { NT_JSON_ESCAPE = 6 };
+size_t nt_json_escape(unsigned char c, char made[NT_JSON_ESCAPE]);
+
 #endif

@@ -195,24 +195,34 @@ static void hand_over(writer *w)
 		w->status = w->take(w->user, "", 0);
 }
 
+size_t nt_json_escape(unsigned char c, char made[NT_JSON_ESCAPE])
+{
+	static const char escaped[] = "\"\\\b\f\n\r\t", letters[] = "\"\\bfnrt";
+	const char hex[NT_JSON_ESCAPE] = {'\\', 'u', '0', '0', "01"[c >> 4 & 1], "0123456789abcdef"[c & 15]};
+	if (c >= 0x20 && c != '"' && c != '\\')
+		return 0;
+	memcpy(made, hex, sizeof hex);
+	const char *known = c ? strchr(escaped, c) : NULL;
+	if (known)
+		made[1] = letters[known - escaped];
+	return known ? 2 : NT_JSON_ESCAPE;
+}
+
 /* `open`: its end is handed over. */
 static void put_string(writer *w, const char *text, size_t size, bool open)
 {
-	static const char escaped[] = "\"\\\b\f\n\r\t", letters[] = "\"\\bfnrt";
+	char made[NT_JSON_ESCAPE];
+	size_t plain = 0;
 	put(w, (slice){"\"", 1});
-	for (size_t i = 0, plain = 0; i <= size; i++) {
-		const unsigned char c = i < size ? (unsigned char)text[i] : 0;
-		if (c >= 0x20 && c != '"' && c != '\\')
+	for (size_t i = 0; i < size; i++) {
+		const size_t length = nt_json_escape((unsigned char)text[i], made);
+		if (!length)
 			continue;
 		put(w, (slice){text + plain, i - plain});
+		put(w, (slice){made, length});
 		plain = i + 1;
-		const char *known = c ? strchr(escaped, c) : NULL;
-		const char hex[] = {'\\', 'u', '0', '0', "01"[c >> 4 & 1], "0123456789abcdef"[c & 15]};
-		if (known)
-			put(w, (slice){(const char[]){'\\', letters[known - escaped]}, 2});
-		else if (i < size)
-			put(w, (slice){hex, sizeof hex});
 	}
+	put(w, (slice){text + plain, size - plain});
 	if (open)
 		hand_over(w);
 	put(w, (slice){"\"", 1});

@@ -148,9 +148,7 @@ static int by_rank(const void *a, const void *b)
 static void tell_beside(nt_scene *scene, const char *folder, const beside *found, size_t count)
 {
 	nt_buffer detail = {0}, option = {0}, word = {0};
-	nt_place place;
-	nt_place_clear(&place);
-	nt_utf8_keep_end(place.file, sizeof place.file, scene->path);
+	const nt_place place = nt_line_place(scene->path, 0);
 	for (size_t i = 0; i < count && i < MOST_BESIDE; i++)
 		nt_buffer_format(&detail, "%s%s", i ? ", or " : "", found[i].name);
 	nt_buffer_format(&option, "--normal-map=%s%s", folder, found[0].name);

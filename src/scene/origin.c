@@ -153,9 +153,7 @@ static void report(nt_scene *scene, nt_code code, const rounding *r, double edge
 			length || !exact->stored ? ""
 			: exact->needless ? "; the PLY keeps its numbers, its normals and its tangents"
 					  : "; the PLY keeps its numbers: only what is computed is made of the floats");
-	nt_place place;
-	nt_place_clear(&place);
-	nt_utf8_keep_end(place.file, sizeof place.file, scene->path);
+	const nt_place place = nt_line_place(scene->path, 0);
 	nt_finding_put(&scene->findings, (nt_finding){.code = code, .count = length ? 1 : r->count, .detail = detail,
 		.stays = stays, .severity = !length && exact->needless ? 1 + NT_SEVERITY_INFO : 0}, &place);
 }

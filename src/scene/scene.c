@@ -150,10 +150,8 @@ nt_material nt_material_default(const char *name)
 
 nt_place nt_material_place(const nt_scene *scene, const nt_material *material, size_t line)
 {
-	nt_place place;
-	nt_place_clear(&place);
-	nt_utf8_keep_end(place.file, sizeof place.file, material->library ? material->library : scene->path);
-	place.line = line ? line : material->line;
+	nt_place place = nt_line_place(material->library ? material->library : scene->path,
+		line ? line : material->line);
 	if (material->name[0])
 		snprintf(place.object, sizeof place.object, "material \"%.*s\"",
 			NT_CUT(200, material->name));

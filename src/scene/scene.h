@@ -439,7 +439,7 @@ void nt_scene_init(nt_scene *scene, const char *path);
 /* Frees everything; the scene is empty afterwards. */
 void nt_scene_free(nt_scene *scene);
 
-/* A line of a text. */
+/* A line of a text; 0: the file. */
 static inline nt_place nt_line_place(const char *path, size_t line)
 {
 	nt_place place;

@@ -70,9 +70,7 @@ static inline size_t nt_next_flagged(const uint8_t *flags, size_t t, size_t coun
 	return t;
 }
 
-enum { NT_FLAG_WORD = 64 };
-
-/* A bit for each of `count` flags, at most NT_FLAG_WORD, that has a bit of `mask`; `neither` receives how many have
+/* A bit for each of `count` flags, at most 64, that has a bit of `mask`; `neither` receives how many have
  * none of `mask` nor the bit `other`, which is not in it. Eight at a time: what a byte has of a mask becomes its lowest
  * bit, and products gather these, or add them up. */
 static inline uint64_t nt_flagged(const uint8_t *flags, size_t count, uint8_t mask, uint8_t other, size_t *neither)

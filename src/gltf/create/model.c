@@ -191,21 +191,15 @@ static uint32_t add_element(nt_model *model, nt_model_list list, const char *tex
 /* A "name" and what comes behind it, as a string of JSON; nothing, without a name. */
 static void put_name(nt_model *model, nt_buffer *out, const char *name, const char *behind)
 {
-	static const char letters[] = {['\b'] = 'b', ['\t'] = 't', ['\n'] = 'n', ['\f'] = 'f', ['\r'] = 'r',
-		['"'] = '"', ['\\'] = '\\'};
+	char made[NT_JSON_ESCAPE];
 	nt_buffer utf8 = {0};
 	if (!name || !*name)
 		return;
 	make_utf8(&utf8, name);
 	nt_buffer_text(out, "\"name\":\"");
 	for (size_t i = 0; i < utf8.size; i++) {
-		const unsigned char c = (unsigned char)utf8.data[i];
-		if (c < sizeof letters && letters[c])
-			nt_buffer_append(out, (char[]){'\\', letters[c]}, 2);
-		else if (c < 0x20)
-			nt_buffer_format(out, "\\u%04x", c);
-		else
-			nt_buffer_append(out, &utf8.data[i], 1);
+		const size_t length = nt_json_escape((unsigned char)utf8.data[i], made);
+		nt_buffer_append(out, length ? made : &utf8.data[i], length ? length : 1);
 	}
 	nt_buffer_text(out, "\"");
 	nt_buffer_text(out, behind);

@@ -260,9 +260,7 @@ void nt_vertices_tell_scenes(nt_scene *scene)
 	for (size_t i = 0; i < nt_json_count(scenes); i++) {
 		if (!nt_json_find(nt_json_find(nt_json_at(scenes, i), "extensions"), name))
 			continue;
-		nt_place place;
-		nt_place_clear(&place);
-		nt_utf8_keep_end(place.file, sizeof place.file, document->path);
+		nt_place place = nt_line_place(document->path, 0);
 		snprintf(place.pointer, sizeof place.pointer, "/scenes/%zu/extensions/%s", i, name);
 		nt_finding_add(&scene->findings, NT_CODE_EXTENSION_STALE, &place, 1, "vertexCount of %s", name);
 	}
