@@ -5,7 +5,7 @@ The text of the sources stays as it is, comments too, but for what one translati
 asks:
 - a header comes where it is first included, and all but the API is static;
 - names that two files have for their own get the name of their file behind them, and macros of a C file end with it;
-- functions that nothing calls go, and what macros leave out that are always set (ALWAYS);
+- functions that nothing calls and structs that nothing has go, and what macros leave out that are always set (ALWAYS);
 - the kernels are compiled once for each instruction set: nmtan.c includes itself, and each time NT_PASS_NAME() makes
   other names of theirs;
 - what takes no time in a solve is compiled for size (COLD), and so are the kernels of the processors that few have.
@@ -187,16 +187,20 @@ class Amalgamation:
 		self.lines += ['@rest']
 
 	def text(self):
-		"""All of it, without the functions that nothing calls, and without lines that are empty for nothing."""
+		"""All of it, without what nothing uses, and without lines that are empty for nothing."""
 		text = '\n'.join(self.lines) + '\n'
 		while True:
 			plain = COMMENT.sub('', text)
 			heads = re.findall(r'^static [^;={(]*?\b(\w+)\(', plain, re.M)
 			heads, words = collections.Counter(heads), collections.Counter(re.findall(r'\w+', plain))
 			unused = [name for name in heads if words[name] == heads[name]]
+			types = [name for name in re.findall(r'^typedef struct (\w+) \{', plain, re.M) if words[name] == 2]
 			for name in unused:
 				text = re.sub(r'(?:^/\*(?:(?!\*/).)*\*/\n)?^static [^;={}()]*\b' + name +
 					r'\([^{};]*\)(?:;\n|\n\{\n.*?^\}\n)', '', text, flags=re.M | re.S)
+			for name in types:
+				text = re.sub(r'(?:^/\*(?:(?!\*/).)*\*/\n)?^typedef struct ' + name + r' \{[^}]*\} ' + name + ';\n',
+					'', text, flags=re.M | re.S)
 			if not unused:
 				text = re.sub(r'^static inline ', 'NT_INLINE ', text, flags=re.M)
 				return re.sub(r'\n\n+(?=/\* ---- )', '\n', re.sub(r'\n\n\n+', '\n\n', text))

@@ -17,6 +17,7 @@ typedef struct nt_vertex_request {
 nmtan_status nt_vertex_tangents(const nmtan_mesh *mesh, const nmtan_options *options,
 	const nt_vertex_request *request, nmtan_split_output *output, nmtan_counts *counts);
 
+#ifndef NT_NO_HALVES
 /* A triangle as a solve by quads sees it. The corners of a quad are a, b, c, d; its halves follow one another, and the
  * first says how both are written. */
 enum nt_half {
@@ -32,7 +33,6 @@ enum nt_half {
 	NT_HALF_SECOND
 };
 
-#ifndef NT_NO_HALVES
 /* [enum nt_half][half] the corners of a half, as corners of its quad. */
 extern const uint8_t nt_half_corners[NT_HALF_SECOND][2][3];
 #endif
