@@ -28,7 +28,33 @@
 #define RARE_IS_WORTH_CODE(entries) true
 #endif
 
-/* The 16-bit halves in which a and b are the same: all bits of such a half, 0 in the others. */
+/* Sets of the 16-bit halves of lanes. By name where there are masks: gcc 12 makes vectors of these and masks of vectors
+ * at each step, which takes 1.4 times as long. */
+#if WIDTH == 16
+typedef __mmask32 half_set;
+#define ALL_HALVES ((half_set)-1)
+#define ARE_ALL(set) ((set) == ALL_HALVES)
+
+/* Leaves those of a set in which a and b are not the same. */
+static inline half_set keep_apart(half_set set, lanes a, lanes b)
+{
+	return _mm512_mask_cmpneq_epi16_mask(set, (__m512i)a, (__m512i)b);
+}
+
+/* a with bits that it has not, in the halves in which b and c are the same. */
+static inline lanes with_where_same(lanes a, lanes b, lanes c, uint32_t bits)
+{
+	return (lanes)_mm512_mask_add_epi16((__m512i)a, _mm512_cmpeq_epi16_mask((__m512i)b, (__m512i)c),
+		(__m512i)a, _mm512_set1_epi32((int)bits));
+}
+
+/* a with those lanes of b that have a bit. */
+static inline lanes with_having(lanes a, lanes b, uint32_t bit)
+{
+	const __mmask16 having = _mm512_test_epi32_mask((__m512i)b, _mm512_set1_epi32((int)bit));
+	return (lanes)_mm512_mask_or_epi32((__m512i)a, having, (__m512i)a, (__m512i)b);
+}
+#else
 static inline lanes same_halves(lanes a, lanes b)
 {
 #if WIDTH > 1
@@ -39,6 +65,26 @@ static inline lanes same_halves(lanes a, lanes b)
 	return LANES_WHERE((other & 0xffff) == 0) >> 16 | LANES_WHERE(other >> 16 == 0) << 16;
 #endif
 }
+
+typedef lanes half_set;
+#define ALL_HALVES (~(half_set){0})
+#define ARE_ALL(set) (!any_lane(~(set)))
+
+static inline half_set keep_apart(half_set set, lanes a, lanes b)
+{
+	return set & ~same_halves(a, b);
+}
+
+static inline lanes with_where_same(lanes a, lanes b, lanes c, uint32_t bits)
+{
+	return a | (same_halves(b, c) & bits);
+}
+
+static inline lanes with_having(lanes a, lanes b, uint32_t bit)
+{
+	return a | (LANES_WHERE((b & bit) != 0) & b);
+}
+#endif
 
 /* Entries of vertices that follow one another, from the first one's first: wide or narrow ones. */
 typedef struct vertex_entries {
@@ -110,7 +156,7 @@ static inline NT_ALWAYS_INLINE lanes count_components(lanes linked[NT_FAN_DEPTH]
 		const lanes mine = linked[a];
 		UNROLL
 		for (uint32_t b = a + 1; b < depth; b++)
-			linked[b] |= LANES_WHERE((mine & unit << b) != 0) & mine;
+			linked[b] = with_having(linked[b], mine, unit << b);
 		count -= LANES_WHERE((mine & (unit * ((1u << depth) - (2u << a)) | voids)) == 0);
 	}
 	return count;
@@ -130,7 +176,7 @@ static inline NT_ALWAYS_INLINE lanes count_wide_fans_of(vertex_entries entries, 
 	lanes linked[NT_FAN_DEPTH];
 	lanes halves[NT_FAN_DEPTH]; /* those of next and of previous in which vertices differ most, without
 	                               orientation */
-	lanes distinct = ~(lanes){0};
+	half_set distinct = ALL_HALVES;
 	UNROLL
 	for (uint32_t k = 0; k < depth; k++) {
 		load_corners(entries, k, degree, mask, &next[k], &previous[k]);
@@ -140,17 +186,17 @@ static inline NT_ALWAYS_INLINE lanes count_wide_fans_of(vertex_entries entries, 
 	/* links across shared edges; edges whose low halves differ are not the same */
 	UNROLL
 	for (uint32_t b = 0; b < depth; b++) {
-		lanes from_earlier = ~(lanes){0}; /* short chains: one for all took 15 to 40 cycles more a block */
+		half_set from_earlier = ALL_HALVES; /* short chains: one for all took 15 to 40 cycles more a block */
 		UNROLL
 		for (uint32_t a = 0; a < b; a++) {
 			const lanes apart = LANES_WHERE(next[a] != previous[b]) & LANES_WHERE(next[b] != previous[a]);
 			linked[a] &= ~(apart & 1u << b);
-			from_earlier &= ~same_halves(halves[a], halves[b]);
+			from_earlier = keep_apart(from_earlier, halves[a], halves[b]);
 		}
 		distinct &= from_earlier;
 	}
 	const lanes count = count_components(linked, depth, 1, NT_ENTRY_VOID);
-	return !any_lane(~distinct) ? count : count | (find_twice(entries, depth, degree, mask) & DOUBTFUL);
+	return ARE_ALL(distinct) ? count : count | (find_twice(entries, depth, degree, mask) & DOUBTFUL);
 }
 
 /* The same of narrow entries, as halves of lanes: next and previous of one corner are compared with previous and next
@@ -161,7 +207,7 @@ static inline NT_ALWAYS_INLINE lanes count_narrow_fans_of(vertex_entries entries
 	static const uint32_t both_halves = 0x10001, voids = 0x10001 * (NT_ENTRY_VOID >> 16);
 	lanes entry[NT_FAN_DEPTH], plain[NT_FAN_DEPTH]; /* plain: without orientation */
 	lanes linked[NT_FAN_DEPTH];
-	lanes distinct = ~(lanes){0};
+	half_set distinct = ALL_HALVES;
 	const lanes mask_of_halves = (mask & 0xffff0000u) | mask >> 16;
 	UNROLL
 	for (uint32_t k = 0; k < depth; k++) {
@@ -176,16 +222,16 @@ static inline NT_ALWAYS_INLINE lanes count_narrow_fans_of(vertex_entries entries
 	UNROLL
 	for (uint32_t b = 1; b < depth; b++) {
 		const lanes other_way = entry[b] << 16 | entry[b] >> 16;
-		lanes from_others = ~(lanes){0}; /* short chains, as above */
+		half_set from_others = ALL_HALVES; /* short chains, as above */
 		UNROLL
 		for (uint32_t a = 0; a < b; a++) {
-			linked[a] |= same_halves(entry[a], other_way) & both_halves << b;
-			from_others &= ~same_halves(plain[a], plain[b]);
+			linked[a] = with_where_same(linked[a], entry[a], other_way, both_halves << b);
+			from_others = keep_apart(from_others, plain[a], plain[b]);
 		}
 		distinct &= from_others;
 	}
 	const lanes count = count_components(linked, depth, both_halves, voids);
-	return !any_lane(~distinct) ? count : count | (find_twice(entries, depth, degree, mask) & DOUBTFUL);
+	return ARE_ALL(distinct) ? count : count | (find_twice(entries, depth, degree, mask) & DOUBTFUL);
 }
 
 static inline NT_ALWAYS_INLINE lanes count_fans_of(vertex_entries entries, const uint32_t depth,
