@@ -313,9 +313,9 @@ static void put_triangles(packing *p)
 			(is_finite_triangle(g, g->indices + 3 * t) ? 0 : 4);
 	}
 	put_array(p, "kinds", p->codes, count);
-	for (size_t i = 0; i < count && g->islands; i++)
+	for (size_t i = 0; i < count; i++)
 		p->codes[i] = g->islands[p->triangles[i]] + 1; /* NT_NONE + 1 is 0 */
-	put_array(p, "islands", p->codes, g->islands ? count : 0);
+	put_array(p, "islands", p->codes, count);
 }
 
 /* ---- seams ---- */
