@@ -305,12 +305,18 @@ static nt_status embed_as_data(moving *m, nt_json_value *image, const nt_file *f
 	return failed ? nt_fail_memory(m->error) : NT_OK;
 }
 
-/* A file of an image beside the output, under this name where that is to be had. */
-static nt_status write_beside(moving *m, nt_json_value *image, const nt_file *file, const char *name)
+static nt_status refer_to_file(moving *m, nt_json_value *image, const char *uri)
+{
+	nt_json_set_string(m->json, nt_json_put(m->json, image, "uri"), uri, strlen(uri));
+	return NT_OK;
+}
+
+/* A file of an image beside the output, under this name where that is to be had; *uri: what it is called. */
+static nt_status write_beside(moving *m, nt_json_value *image, const nt_file *file, const char *name, const char **uri)
 {
 	const char *folder_end = strrchr(m->output->options->path, '/');
 	const size_t folder = folder_end ? (size_t)(folder_end - m->output->options->path) + 1 : 0;
-	nt_buffer path = {0}, uri = {0};
+	nt_buffer path = {0}, text = {0};
 	nt_sink *sink;
 	nt_buffer_append(&path, m->output->options->path, folder);
 	nt_buffer_text(&path, name);
@@ -323,12 +329,10 @@ static nt_status write_beside(moving *m, nt_json_value *image, const nt_file *fi
 		status = nt_output_settle(m->output->set, sink, m->error);
 	if (status)
 		return status;
-	nt_uri_append_path(&uri, nt_sink_name(sink, false));
-	const bool failed = uri.failed;
-	if (!failed)
-		nt_json_set_string(m->json, nt_json_put(m->json, image, "uri"), uri.data, uri.size);
-	nt_buffer_free(&uri);
-	return failed ? nt_fail_memory(m->error) : NT_OK;
+	nt_uri_append_path(&text, nt_sink_name(sink, false));
+	*uri = text.failed ? NULL : nt_arena_text(&m->edits->arena, text.data, text.size);
+	nt_buffer_free(&text);
+	return *uri ? refer_to_file(m, image, *uri) : nt_fail_memory(m->error);
 }
 
 /* New pixels take the place of the old ones: in a view, a data URI or a file. */
@@ -351,7 +355,8 @@ static nt_status place_turned(moving *m, nt_json_value *image, const nt_turned_i
 		nt_buffer_format(&text, "%.*s%s.png", dot ? (int)(dot - name) : (int)strlen(name), name,
 			turned->suffix);
 		if (!status)
-			status = text.failed ? nt_fail_memory(m->error) : write_beside(m, image, &file, text.data);
+			status = text.failed ? nt_fail_memory(m->error)
+				: write_beside(m, image, &file, text.data, &uri);
 		nt_buffer_free(&text);
 		return status;
 	}
@@ -368,19 +373,10 @@ static nt_status place_turned(moving *m, nt_json_value *image, const nt_turned_i
 static nt_status copy_file(moving *m, nt_json_value *image, const nt_file *file, const char *path)
 {
 	moved_file *moved = destination_of(m, file);
-	size_t length;
 	if (!moved)
 		return NT_ERROR_MEMORY;
-	if (moved->uri) {
-		nt_json_set_string(m->json, nt_json_put(m->json, image, "uri"), moved->uri, strlen(moved->uri));
-		return NT_OK;
-	}
-	const nt_status status = write_beside(m, image, file, nt_last_part(path));
-	if (status)
-		return status;
-	const char *uri = nt_json_find_string(image, "uri", &length);
-	moved->uri = nt_arena_text(&m->edits->arena, uri, length);
-	return moved->uri ? NT_OK : nt_fail_memory(m->error);
+	return moved->uri ? refer_to_file(m, image, moved->uri)
+			  : write_beside(m, image, file, nt_last_part(path), &moved->uri);
 }
 
 static nt_status copy_image(moving *m, size_t index, nt_json_value *image)
