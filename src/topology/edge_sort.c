@@ -270,11 +270,9 @@ static NT_NOINLINE void find(edge_array *e, vertex *v)
 {
 	if (v->least == v->most || e->failed)
 		return;
-	e->failed = !place(e);
-	if (e->failed)
-		return;
-	e->failed = !nt_cells_find(&e->cells, &e->parts[v->cell], v->number);
-	v->least = v->most = nt_cells_found(&e->cells, v->number);
+	e->failed = !place(e) || !nt_cells_find(&e->cells, &e->parts[v->cell], v->number);
+	if (!e->failed)
+		v->least = v->most = nt_cells_found(&e->cells, v->number);
 }
 
 /* Less than 0: the key is less than the pivot; and so on. If it failed, it is 0. */

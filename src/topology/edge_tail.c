@@ -19,11 +19,9 @@
 #include <string.h>
 #include "base/compiler.h"
 
-/* Triangles at the end that are looked at first, and how many times more the next time. */
-enum { FIRST = 9, MORE = 4 };
-
-/* So few triangles are not looked at again: the order is asked for at once. */
-enum { SMALL = 4096 };
+/* Triangles at the end that are looked at first, and how many times more the next time. SMALL meshes are not looked at
+ * again: edge_sort.c finds out. */
+enum { FIRST = 9, MORE = 4, SMALL = 4096 };
 
 /* Vertices of the last triangles, and triangles with two of them. If there are more, all edges are looked at. */
 enum { MOST_MEMBERS = 120, MOST_NEAR = 1024, MOST_PAIRS = 64 };
@@ -239,7 +237,6 @@ static bool list_corners(question *q)
 {
 	const nt_welded_mesh *m = q->mesh;
 	const nt_grid grid = q->tail->grid;
-	const float *const rows = m->positions + grid.axis;
 	const size_t all = 3 * q->noted_count, enough = m->triangle_count + 3 * NT_EDGE_FEW;
 	const size_t most = all < enough ? all : enough;
 	uint32_t *const listed = nt_scratch_alloc(m->scratch, 2 * most + 3, sizeof *listed);
@@ -253,7 +250,7 @@ static bool list_corners(question *q)
 		uint32_t copy[3];
 		const uint32_t *v = nt_vertices_of(m, t, copy);
 		for (uint32_t k = 0; k < 3; k++) {
-			const uint8_t slot = q->slots[nt_grid_cell(&grid, rows[m->step * v[k]])];
+			const uint8_t slot = q->slots[nt_grid_cell(&grid, nt_welded_position(m, v[k])[grid.axis])];
 			listed[count] = 3 * t + k;
 			slots[count] = slot;
 			count += slot != NO_SLOT;
@@ -460,10 +457,8 @@ static bool ask_members(question *q, nt_edge_answer *result, bool *limit)
 			const unsigned slot = q->slots[nt_grid_cell(&q->tail->grid, position[q->tail->grid.axis])];
 			if (!q->corners && !list_corners(q))
 				return false;
-			if (q->too_many) {
-				*result = NT_EDGE_MAY;
-				return true;
-			}
+			if (q->too_many)
+				return *result = NT_EDGE_MAY, true;
 			if (!find_members(q, slot, limit))
 				return false;
 		}

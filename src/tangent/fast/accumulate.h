@@ -337,17 +337,24 @@ static void NT_NOINLINE change_special(const nt_fast *fast, size_t first, size_t
 {
 	static const nt_record note = {.state = NT_STATE_BASE | (NT_STATE_ALL & ~NT_STATE_NO_ANY)};
 	static const uint32_t unsound = NT_STATE_BASE | NT_STATE_NO_ANY | NT_STATE_LOCAL;
+	int sound = 1;
+	size_t others;
+	uint64_t any = nt_flagged(fast->flags + first, count, NT_TRIANGLE_ANY, 0, &others);
 	for (size_t i = 0; i < count; i++) {
-		const size_t place = 4 * turned_place(i);
-		const bool any = fast->flags[first + i] & NT_TRIANGLE_ANY;
-		flags[i] = (uint8_t)(fast->flags[first + i] & ~(any ? NT_TRIANGLE_ORIENT : 0));
-		for (int k = 0; k < 3 && any; k++) {
+		flags[i] = (uint8_t)(fast->flags[first + i] & ~(any >> i & NT_TRIANGLE_ORIENT));
+		sound &= out->sound[i] | (int)(any >> i & 1);
+	}
+	for (size_t i = 0; !sound && i < count; i++)
+		for (int k = 0; k < 3 && !out->sound[i]; k++)
+			memcpy(out->add[k] + 4 * turned_place(i) + 3, &unsound, sizeof unsound);
+	for (; any; any &= any - 1) {
+		const size_t place = 4 * turned_place((size_t)nt_trailing_zeros(any));
+		for (int k = 0; k < 3; k++)
 			memcpy(out->add[k] + place, &note, sizeof note);
+		for (int k = 0; k < 3 && fast->wants_more; k++) {
 			memset(out->more[k][0] + place, 0, sizeof note);
 			memset(out->more[k][1] + place, 0, sizeof note);
 		}
-		for (int k = 0; k < 3 && !any && !out->sound[i]; k++)
-			memcpy(out->add[k] + place + 3, &unsound, sizeof unsound);
 	}
 }
 

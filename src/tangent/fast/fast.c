@@ -208,23 +208,25 @@ static nmtan_status fill_bins(nt_fast *fast, const nt_kernels *kernels, unsigned
 
 /* An "any" triangle that groups of both orientations can reach takes the one that is seeded first. At its
  * vertices order matters, so they are not settled. */
-static void mark_undecided(nt_fast *fast)
+static void mark_undecided(void *context, size_t begin, size_t end, unsigned thread)
 {
-	if (!fast->records[0] || !fast->records[1])
-		return;
-	size_t t = nt_fast_next_flagged(fast, 0, NT_TRIANGLE_ANY);
-	for (; t < fast->triangle_count; t = nt_fast_next_flagged(fast, t + 1, NT_TRIANGLE_ANY)) {
-		uint32_t copy[3];
-		const uint32_t *v = nt_triangle_vertices(&fast->triangles, t, 1, copy);
-		if (fast->flags[t] & NT_TRIANGLE_DEGENERATE)
-			continue;
-		uint32_t empty[2] = {NT_STATE_EMPTY, NT_STATE_EMPTY};
-		for (int k = 0; k < 3; k++)
-			for (int o = 0; o < 2; o++)
-				empty[o] &= fast->records[o][v[k]].state;
-		for (int k = 0; !empty[0] && !empty[1] && k < 3; k++)
-			fast->records[0][v[k]].state &= ~(uint32_t)NT_STATE_LOCAL;
-	}
+	(void)thread;
+	const nt_fast *fast = context;
+	nt_record *const a = fast->records[0], *const b = fast->records[1];
+	for (size_t word = begin; a && b && word < end; word++)
+		for (uint64_t any = nt_fast_flagged(fast, NT_FLAG_WORD * word, NT_TRIANGLE_ANY); any; any &= any - 1) {
+			const size_t t = NT_FLAG_WORD * word + (size_t)nt_trailing_zeros(any);
+			uint32_t copy[3], here[3], all[2] = {NT_STATE_EMPTY, NT_STATE_EMPTY};
+			const uint32_t *v = nt_triangle_vertices(&fast->triangles, t, 1, copy);
+			for (int k = 0; k < 3; k++) {
+				here[k] = nt_atomic_load(&a[v[k]].state, RELAXED);
+				all[0] &= here[k];
+				all[1] &= b[v[k]].state;
+			}
+			/* of other threads some may write the same */
+			for (int k = 0; !(all[0] | all[1]) && !(fast->flags[t] & NT_TRIANGLE_DEGENERATE) && k < 3; k++)
+				nt_atomic_store(&a[v[k]].state, here[k] & ~(uint32_t)NT_STATE_LOCAL, RELAXED);
+		}
 }
 
 static void settle_blocks(void *context, size_t begin, size_t end, unsigned thread)
@@ -264,9 +266,10 @@ static bool make_bins(run *r, unsigned ranges)
 static nmtan_status settle(nt_fast *fast, const nt_kernels *kernels, nt_settled *sum)
 {
 	const unsigned ranges = fast->ranges.count;
+	const size_t words = (fast->triangle_count + NT_FLAG_WORD - 1) / NT_FLAG_WORD;
+	*sum = (nt_settled){0};
 	if (fast->small) {
-		*sum = (nt_settled){0};
-		mark_undecided(fast);
+		mark_undecided(fast, 0, words, 0);
 		kernels->settle(fast, &fast->adjacency, fast->records, 0,
 			(fast->vertex_count + NT_LANES - 1) / NT_LANES, sum);
 		return NMTAN_OK;
@@ -286,11 +289,10 @@ static nmtan_status settle(nt_fast *fast, const nt_kernels *kernels, nt_settled 
 			return NMTAN_ERROR_MEMORY;
 		nt_parallel_ranges(ranges, fast->bins.count, 1, settle_bins, &r);
 	} else {
-		mark_undecided(fast);
+		nt_parallel_ranges(ranges, words, 1, mark_undecided, fast);
 		nt_parallel_ranges(ranges, (fast->vertex_count + NT_LANES - 1) / NT_LANES, 1, settle_blocks,
 			&r);
 	}
-	*sum = (nt_settled){0};
 	for (unsigned i = 0; i < ranges; i++) {
 		const nt_settled *s = &r.settled[i];
 		sum->complex_count += s->complex_count;
@@ -382,7 +384,8 @@ static nmtan_status write_results(nt_fast *fast, const nt_kernels *kernels, cons
 	if (fast->solve->known)
 		tell_known(fast);
 	/* these corners are copied from others, which must have been written */
-	if (fast->sparse && nt_fast_next_flagged(fast, 0, NT_TRIANGLE_COPY) < fast->triangle_count)
+	const size_t count = fast->triangle_count;
+	if (fast->sparse && nt_next_flagged(fast->flags, 0, count, NT_TRIANGLE_COPY) < count)
 		nt_fast_write_rest(fast);
 	if (fast->sparse)
 		fast->solve->known->ids = fast->triangles.ids;

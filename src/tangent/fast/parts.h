@@ -143,10 +143,14 @@ static inline nt_record *nt_fast_record(const nt_fast *fast, int orient, uint32_
 	return &fast->records[orient][fast->record_step * vertex];
 }
 
-/* The next triangle from t on that has this flag; triangle_count: none. */
-static inline size_t nt_fast_next_flagged(const nt_fast *fast, size_t t, unsigned flag)
+enum { NT_FLAG_WORD = 64 };
+
+/* A bit for each of NT_FLAG_WORD triangles from `first` on, or of those that there are, that has this flag. */
+static inline uint64_t nt_fast_flagged(const nt_fast *fast, size_t first, uint8_t flag)
 {
-	return nt_next_flagged(fast->flags, t, fast->triangle_count, flag);
+	const size_t left = fast->triangle_count - first;
+	size_t others;
+	return nt_flagged(fast->flags + first, left < NT_FLAG_WORD ? left : NT_FLAG_WORD, flag, 0, &others);
 }
 
 /* The triangles whose corners have to be looked at one by one: those that do not have three settled

@@ -285,7 +285,7 @@ void nt_fast_write_defaults(const nt_fast *fast)
 /* The next triangle from t on that copies corners. */
 static size_t next_copy(const nt_fast *fast, size_t t)
 {
-	return nt_fast_next_flagged(fast, t, NT_TRIANGLE_COPY);
+	return nt_next_flagged(fast->flags, t, fast->triangle_count, NT_TRIANGLE_COPY);
 }
 
 static void copy_corner(const nt_solve *solve, size_t to, size_t from)
