@@ -8,6 +8,7 @@
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
+#include "file/output.h"
 #include "file/path.h"
 
 /* Takes the next word of a list separated by commas; false at its end. */
@@ -177,7 +178,8 @@ nt_status nt_report_plan_make(nt_report_plan *plan, const nt_command *command, b
 	}
 	if (!status && command->baseline) {
 		status = nt_baseline_open(&plan->baseline, command->baseline, error);
-		if (status == NT_ERROR_MISSING && access(command->baseline, F_OK) != 0)
+		if (status == NT_ERROR_MISSING && access(command->baseline, F_OK) != 0 &&
+			nt_output_check_folder(command->baseline, error) == NT_OK)
 			tell_no_baseline(command->baseline, error);
 		plan->options.baseline = &plan->baseline;
 	}

@@ -300,15 +300,16 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"> Mark Seam) and unwrap it again.",
 		"three quads in a row with u = 0, 1, 0.4, 1.4"),
 	ROW(UV_FLIPPED_TRIANGLE, WARNING, "w-i", EXPORT, NULL, "{count} of {detail} {is|are} flipped",
-		"A few triangles in a row are wound against their island, or have texture coordinates of their own and "
-		"lie inside a large island of the other winding: at most 5 % of its triangles, of its area and of its "
-		"texels, or a single one up to 10 %, if all triangles that are wound so are at most 15 % of each. "
-		"Texture is mirrored there. They make no seam, fold or mirrored island. Nothing is said of needles "
-		"whose height is up to a hundredth of their length in texture coordinates (UV_NEAR_DEGENERATE has "
-		"those that can be mended), and below a hundred-thousandth of the mesh's area. An info if no material "
-		"of a glTF needs tangents (of an OBJ: of its glTF), and up to a thousandth of the mesh's area.",
-		"Relax the knot in the UV editor (Blender: UV > Minimize Stretch), or unwrap these triangles again; "
-		"turn those over that are an island of their own (Blender: UV > Mirror > X Axis).",
+		"A few triangles in a row are wound against their island: at most 5 % of its triangles, of its area "
+		"and of its texels, or a single one up to 10 %, if all triangles that are wound so are at most 15 % "
+		"of each. Texture is mirrored there. They make no seam and no fold. Nothing is said of what rounding "
+		"may have turned, to float or to a grid on which all coordinates of the mesh lie, as Draco, "
+		"KHR_mesh_quantization and texts with few decimals have them: heights up to 1.4 steps. Nor of what "
+		"nobody sees: less than a texel or half a texel high (of 2048 x 2048), thinner in space than a "
+		"thirty-second of the length, or in a row below a hundred-thousandth of the mesh's area. An info if "
+		"no material of a glTF needs tangents (of an OBJ: of its glTF), and up to a thousandth of the mesh's "
+		"area.",
+		"Relax the knot in the UV editor (Blender: UV > Minimize Stretch), or unwrap these triangles again.",
 		"a grid of 4 x 4 quads in which one inner corner's UVs were moved over the opposite edge"),
 	ROW(UV_HARD_EDGE, WARNING, "w-i", LOOK, NULL,
 		"{count} hard {edge lies inside a UV island|edges lie inside UV islands}: {detail}",
@@ -323,9 +324,10 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 	ROW(UV_DEGENERATE_TRIANGLE, INFO, "w-i", EXPORT, NULL,
 		"{count} {triangle has|triangles have} no area in UV space",
 		"The three texture coordinates are collinear: there is no direction in which u grows, so the tangent "
-		"comes from a neighbour or from the normal. Nothing is said below a hundred-thousandth of the mesh's "
-		"area. A warning when such triangles are more than 1 % of the mesh's area, unless no material of a "
-		"glTF needs tangents (of an OBJ: of its glTF).",
+		"comes from a neighbour or from the normal. Nothing is said of triangles that have no area in space "
+		"either (POS_DEGENERATE_TRIANGLE), and below a hundred-thousandth of the mesh's area. A warning when "
+		"such triangles are more than 1 % of the mesh's area, unless no material of a glTF needs tangents (of "
+		"an OBJ: of its glTF).",
 		"Unwrap these triangles (Blender: UV > Smart UV Project) if they are visible and normal mapped.",
 		"two triangles, of which one has UVs (0,0), (1,0), (2,0)"),
 	ROW(UV_NEAR_DEGENERATE, INFO, "w-i", EXPORT, NULL,
@@ -334,9 +336,10 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"than one degree. It decides a tangent if it may turn the triangle over in UV space or its tangent by "
 		"90 degrees. The coordinates are coincident if rounding may turn a side between them by one degree, "
 		"else collinear. The finding gives the smallest relative determinant |det| / (|e1| |e2|) of a "
-		"triangle's two longest sides. Nothing is said of triangles that are as thin in space, and below a "
-		"hundred-thousandth of the mesh's area. A warning when they are more than 1 % of the mesh's area, "
-		"unless no material of a glTF needs tangents (of an OBJ: of its glTF).",
+		"triangle's two longest sides. Nothing is said of triangles that are as thin in space, up to twice as "
+		"wide by their length, and below a hundred-thousandth of the mesh's area. A warning when they are "
+		"more than 1 % of the mesh's area, unless no material of a glTF needs tangents (of an OBJ: of its "
+		"glTF).",
 		"If they are normal mapped, give them more room in the texture (Blender: UV > Unwrap, or UV > Smart UV "
 		"Project). Move an island that is tiles away from the origin back (Blender: UV > Pack Islands).",
 		"a triangle with UVs (0,1000), (1,1000), (0,1000.001)"),

@@ -200,8 +200,10 @@ static const char *repair_of(nt_check *check, const nt_report_finding *finding, 
 	if (finding->code == NT_CODE_TAN_UNUSED)
 		return nt_format_is_gltf(check->scene->format) ? repair : NULL;
 	if (nt_code_mends(finding->code)) {
-		const bool missing = finding->code == NT_CODE_TAN_MISSING_REQUIRED;
-		if (!mesh->has_normals || (!mesh->has_texcoords && missing))
+		/* what is not there, or cannot be read, is made of texture coordinates */
+		const bool computed = finding->code == NT_CODE_TAN_MISSING_REQUIRED ||
+			finding->code == NT_CODE_TAN_ACCESSOR;
+		if (!mesh->has_normals || (!mesh->has_texcoords && computed))
 			return mesh->has_texcoords ? nt_code_info(NT_CODE_TAN_NO_NORMAL)->repair : NULL;
 		if (severity > NT_SEVERITY_INFO)
 			return repair;

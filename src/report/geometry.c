@@ -38,7 +38,7 @@ enum { PART = 128 * NT_BLOCK };
 enum { FLAT, MISSING, NO_AREA, NEAR, AGAINST };
 static const nt_code codes[] = {NT_CODE_POS_DEGENERATE_TRIANGLE, NT_CODE_UV_MISSING, NT_CODE_UV_DEGENERATE_TRIANGLE,
 	NT_CODE_UV_NEAR_DEGENERATE, NT_CODE_MESH_NORMAL_AGAINST_FACE};
-enum { COINCIDENT, COLLINEAR, NEARLY_COINCIDENT, UNDECIDED };
+enum { COINCIDENT, COLLINEAR, NEARLY_COINCIDENT, UNDECIDED, FLAT_IN_BOTH };
 enum { BOUND, DETERMINANT }; /* the least one's negative */
 
 typedef struct triangle_work {
@@ -146,6 +146,12 @@ static bool lacks_texcoords(const nt_check *check, const uint32_t v[3])
 	return lacks && lacks[v[0]] & lacks[v[1]] & lacks[v[2]] & NT_LACKS_TEXCOORD;
 }
 
+/* Whether a triangle has no area in space: no unwrap gives it one in UV space that anybody sees. */
+static bool is_flat(const nt_surface *s, size_t t)
+{
+	return s->flatness[t] == NT_COINCIDENT || s->flatness[t] == NT_COLLINEAR;
+}
+
 /* face: d1 x d2 */
 static void check_texcoords(const triangle_work *work, size_t t, const uint32_t v[3], nt_dvec3 d1, nt_dvec3 d2,
 	nt_dvec3 face, nt_part *part)
@@ -154,8 +160,13 @@ static void check_texcoords(const triangle_work *work, size_t t, const uint32_t 
 	const nt_surface *s = &check->surface;
 	work->determinants[t] = NAN;
 	if (s->orientation[t] == 0) {
+		const bool lacks = lacks_texcoords(check, v);
 		const double area = nt_triangle_area(s, t);
-		nt_tally *tally = &part->tallies[lacks_texcoords(check, v) ? MISSING : NO_AREA];
+		nt_tally *tally = &part->tallies[lacks ? MISSING : NO_AREA];
+		if (!lacks && is_flat(s, t)) {
+			part->sums[FLAT_IN_BOTH]++;
+			return;
+		}
 		nt_tally_triangle(check, tally, t, area);
 		tally->area += area;
 		return;
@@ -166,7 +177,7 @@ static void check_texcoords(const triangle_work *work, size_t t, const uint32_t 
 	const double determinant = frame.determinant / sqrt(frame.n1 * frame.n2);
 	if (isfinite(determinant))
 		work->determinants[t] = (float)determinant;
-	if (is_far_from_degenerate(&frame, face) || s->flatness[t] == NT_COINCIDENT || s->flatness[t] == NT_COLLINEAR)
+	if (is_far_from_degenerate(&frame, face) || is_flat(s, t))
 		return;
 	const double across = nt_dvec3_length(face), sine = rounding_sine(s, t, &frame, across);
 	if (!(sine <= NEAR_DEGENERATE_SINE) && !is_thin_in_space(&frame, d1, d2, across))
@@ -189,7 +200,7 @@ static void check_triangle(const triangle_work *work, size_t t, nt_part *part)
 	const nt_surface *s = &check->surface;
 	const nt_flatness flatness = s->flatness[t];
 	/* POS_ROUNDED says what happened to the file's positions: the triangle may have an area there */
-	if ((flatness == NT_COINCIDENT || flatness == NT_COLLINEAR) && !check->scene->positions_rounded) {
+	if (is_flat(s, t) && !check->scene->positions_rounded) {
 		part->sums[flatness == NT_COINCIDENT ? COINCIDENT : COLLINEAR]++;
 		nt_tally_triangle(check, &part->tallies[FLAT], t, nt_triangle_area(s, t));
 	}
@@ -291,7 +302,7 @@ static nt_status count_neighbours(const nt_check *check, size_t *count)
 	for (size_t c = 0; c < 3 * s->triangle_count; c++) {
 		const uint32_t v = nt_side_vertex(s, c);
 		const bool lacks = check->mesh->vertex_lacks && check->mesh->vertex_lacks[v] & NT_LACKS_TEXCOORD;
-		*count += !s->orientation[c / 3] && !lacks && nt_bit(sound, v);
+		*count += !s->orientation[c / 3] && !is_flat(s, c / 3) && !lacks && nt_bit(sound, v);
 	}
 	return NT_OK;
 }
@@ -348,7 +359,7 @@ static void report_triangles(nt_check *check, nt_part *all, size_t from_neighbou
 	const size_t from_normal = 3 * no_area->count - from_neighbour;
 	nt_tally_number(no_area, "corners_from_neighbour", (double)from_neighbour);
 	nt_tally_number(no_area, "corners_from_normal", (double)from_normal);
-	if (no_area->count == check->surface.triangle_count) {
+	if (no_area->count && no_area->count + (size_t)all->sums[FLAT_IN_BOTH] == check->surface.triangle_count) {
 		no_area->code = NT_CODE_UV_UNMAPPED;
 		nt_check_report_as(check, no_area, severities[NO_AREA], NULL);
 	} else if (nt_is_visible(check, no_area->area)) {

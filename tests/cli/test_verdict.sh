@@ -949,6 +949,8 @@ vec3|--existing=keep|TAN_ACCESSOR|1,0,0 0,0,1
 vec3|--existing=replace||1,0,0,1 0,0,1
 vec3|--existing=repair||1,0,0,1 0,0,1
 vec3|--fix|fixed TAN_ACCESSOR|1,0,0,1 0,0,1
+no_uv|--check|Compute the tangents. nmtan cannot do it here|
+vec3|--check|Compute the tangents: nmtan --fix vec3.gltf|
 no_uv|--existing=replace|TAN_ACCESSOR|1,0,0 0,0,1
 no_uv|--existing=repair|TAN_ACCESSOR|1,0,0 0,0,1
 no_uv|--fix|the input has nothing that --fix repairs|1,0,0 0,0,1

@@ -62,7 +62,8 @@ NEWER = LAYOUT + [
                r'MIXED_WINDING_ISLAND)|TAN_MIRROR_SHARED_VERTEX): ', RULES),
     ('report', r' /seams: | /files/N/meshes/N/(seam_(count|length)|edges/mirror|islands_by_kind/\w+|'
                r'islands/N/(kind|covered_share|twin)): ', RULES),
-    ('report', r' /files/N/verdict: .* flipped', RULES),
+    ('messages', r' "nmtan: and \d+ more findings that fail', RULES),
+    ('report', r" /files/N/verdict: .*( flipped|; and \d+ more')", RULES),
 ]
 # Since COMMIT, which is older than issues 44, 47 and 49.
 FINDINGS = (r'(NORMALS_MADE|REFERENCE_LOST|MATERIAL_LOST|MATERIAL_FIRST|IMAGE_MISSING|TAN_QUADS_LIKELY|TAN_QUADS_NONE|UV_HARD_EDGE|'

@@ -91,7 +91,7 @@ bool nt_gltf_link_leaves(const nt_json_value *object, const char *prefix);
 /* Puts the prefix before the uri of a buffer or an image, where that is relative. */
 nt_status nt_gltf_link(nt_json *json, nt_json_value *object, const char *prefix, nt_error *error);
 
-/* A finding about a uri that leads out of the output's folder: of an element of "buffers" or "images". */
-void nt_gltf_tell_leaving(nt_scene *scene, const char *array, size_t index, const char *why);
+/* A finding about an element of "buffers" or "images". */
+void nt_gltf_tell(nt_scene *scene, const char *array, size_t index, nt_code code, const char *text);
 
 #endif

@@ -93,12 +93,12 @@ bool nt_gltf_link_leaves(const nt_json_value *object, const char *prefix)
 	return leaves;
 }
 
-void nt_gltf_tell_leaving(nt_scene *scene, const char *array, size_t index, const char *why)
+void nt_gltf_tell(nt_scene *scene, const char *array, size_t index, nt_code code, const char *text)
 {
 	nt_place place;
 	nt_place_clear(&place);
 	snprintf(place.pointer, sizeof place.pointer, "/%s/%zu", array, index);
-	nt_finding_add(&scene->findings, NT_CODE_LINK_LEAVES, &place, 1, "%s", why);
+	nt_finding_add(&scene->findings, code, &place, 1, "%s", text);
 }
 
 nt_status nt_gltf_link(nt_json *json, nt_json_value *object, const char *prefix, nt_error *error)
@@ -178,14 +178,6 @@ static nt_status open_file(nt_gltf *document, const char *uri, size_t length, nt
 	return status;
 }
 
-static void tell(nt_scene *scene, size_t index, nt_code code, const char *text)
-{
-	nt_place place;
-	nt_place_clear(&place);
-	snprintf(place.pointer, sizeof place.pointer, "/images/%zu", index);
-	nt_finding_add(&scene->findings, code, &place, 1, "%s", text);
-}
-
 /* Opens the file of an image; *path is NULL, after a finding, if that is not possible. */
 static nt_status open_image(moving *m, size_t index, const nt_json_value *image, nt_file *file, const char **path)
 {
@@ -201,7 +193,7 @@ static nt_status open_image(moving *m, size_t index, const nt_json_value *image,
 		snprintf(m->error->place.pointer, sizeof m->error->place.pointer, "/images/%zu", index);
 		return status;
 	}
-	tell(m->scene, index, NT_CODE_IMAGE_MISSING, error.message);
+	nt_gltf_tell(m->scene, "images", index, NT_CODE_IMAGE_MISSING, error.message);
 	return NT_OK;
 }
 
@@ -235,7 +227,7 @@ static nt_status look_for_image(nt_scene *scene, size_t index, bool linked, nt_e
 		return status;
 	}
 	if (status)
-		tell(scene, index, NT_CODE_IMAGE_MISSING, failure.message);
+		nt_gltf_tell(scene, "images", index, NT_CODE_IMAGE_MISSING, failure.message);
 	return NT_OK;
 }
 
@@ -399,7 +391,7 @@ static nt_status embed_file(moving *m, size_t index, nt_json_value *image, const
 	const char *type = media_type(m->edits->document, file);
 	*is_kept = false;
 	if (!type) {
-		tell(m->scene, index, NT_CODE_IMAGE_TYPE, "it stays a file");
+		nt_gltf_tell(m->scene, "images", index, NT_CODE_IMAGE_TYPE, "it stays a file");
 		return m->output->is_stream ? nt_gltf_link(m->json, image, m->output->link_prefix, m->error)
 			: *m->output->link_prefix ? copy_file(m, image, file, path) : NT_OK;
 	}
@@ -474,7 +466,7 @@ nt_status nt_gltf_move_images(nt_scene *scene, nt_buffer_edits *edits, const nt_
 			continue;
 		const bool leaves = !output->is_stream && nt_gltf_link_leaves(image, output->link_prefix);
 		if (choice == NT_IMAGES_LINK && leaves)
-			nt_gltf_tell_leaving(scene, "images", i, "as --images=link asks");
+			nt_gltf_tell(scene, "images", i, NT_CODE_LINK_LEAVES, "as --images=link asks");
 		if (choice == NT_IMAGES_EMBED)
 			status = embed_image(&m, i, image);
 		else if ((choice == NT_IMAGES_COPY && !output->is_stream) || (choice == NT_IMAGES_DEFAULT && leaves))

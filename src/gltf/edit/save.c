@@ -304,12 +304,13 @@ static nt_status open_or_link(writing *c, uint32_t index, destination *what)
 {
 	nt_status status = open_source(c, index, *what);
 	if (status && status != NT_ERROR_MEMORY && *what == TO_SIDECAR && can_stay(c, index)) {
-		nt_gltf_tell_leaving(c->scene, "buffers", index, c->error ? c->error->message : "it cannot be read");
+		nt_gltf_tell(c->scene, "buffers", index, NT_CODE_LINK_LEAVES,
+			c->error ? c->error->message : "it cannot be read");
 		nt_error_clear(c->error);
 		*what = LINKED;
 		status = NT_OK;
 	} else if (*what == LINKED && c->options->buffers == NT_BUFFERS_LINK && link_leaves(c, index)) {
-		nt_gltf_tell_leaving(c->scene, "buffers", index, "as --buffers=link asks");
+		nt_gltf_tell(c->scene, "buffers", index, NT_CODE_LINK_LEAVES, "as --buffers=link asks");
 	}
 	return status;
 }

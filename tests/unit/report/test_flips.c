@@ -90,41 +90,43 @@ TEST(a_small_one_is_an_info)
 	}
 }
 
-TEST(so_is_one_with_coordinates_of_its_own)
+/* A triangle with texture coordinates of its own is an island: of the other winding than those around it is mirrored,
+ * lone or not, and has a seam. In a mirrored mesh that is what lies around. */
+TEST(one_with_coordinates_of_its_own_is_no_flipped_triangle)
 {
-	static const uint32_t middle = 2 * (2 * N + 2); /* corners (2, 2), (3, 2), (3, 3) */
-	const float swapped[3][2] = {{2, 2}, {3, 3}, {3, 2}};
-	hand_mesh *h = make_grid();
-	cut_out(h, middle, swapped);
-	nt_report *report = hand_report(h, NULL);
-	assert_int_equal(report->meshes[0].island_count, 2);
-	const nt_report_finding *found = hand_finding(report, NT_CODE_UV_FLIPPED_TRIANGLE);
-	assert_int_equal(found->count, 1);
-	assert_int_equal(found->spots[0].triangle, middle);
-	assert_int_equal(mirror_findings(report), 0);
-	hand_free(h, report);
+	enum { LONE, TWIN, IN_A_MIRRORED_MESH, COUNT };
+	static const float places[COUNT][3][2] = {{{2, 2}, {3, 3}, {3, 2}}, {{0, 0}, {1, 1}, {1, 0}},
+		{{2, 2}, {3, 3}, {3, 2}}};
+	for (int i = 0; i < COUNT; i++) {
+		hand_mesh *h = make_grid();
+		cut_out(h, 2 * (2 * N + 2), places[i]); /* corners (2, 2), (3, 2), (3, 3) */
+		for (uint32_t v = 0; v < h->mesh.vertex_count && i == IN_A_MIRRORED_MESH; v++)
+			h->texcoords[v][0] = N - h->texcoords[v][0];
+		nt_report *report = hand_report(h, NULL);
+		assert_int_equal(report->meshes[0].island_count, 2);
+		assert_int_equal(hand_findings(report, NT_CODE_UV_FLIPPED_TRIANGLE), 0);
+		assert_int_equal(hand_findings(report, NT_CODE_UV_MIRROR_OVERLAP), i == TWIN);
+		assert_int_equal(hand_findings(report, NT_CODE_UV_MIRROR_LONE), i != TWIN);
+		assert_int_equal(hand_findings(report, NT_CODE_UV_MIRROR_SEAM), 1);
+		hand_free(h, report);
+	}
 }
 
-/* The same triangle with the texels of another one: a mirrored detail, which is meant. */
-TEST(a_small_island_that_has_a_twin_is_mirrored)
-{
-	const float twin[3][2] = {{0, 0}, {1, 1}, {1, 0}};
-	hand_mesh *h = make_grid();
-	cut_out(h, 2 * (2 * N + 2), twin);
-	nt_report *report = hand_report(h, NULL);
-	assert_int_equal(hand_findings(report, NT_CODE_UV_FLIPPED_TRIANGLE), 0);
-	assert_int_equal(hand_finding(report, NT_CODE_UV_MIRROR_OVERLAP)->count, 1);
-	assert_int_equal(hand_findings(report, NT_CODE_UV_MIRROR_SEAM), 1);
-	hand_free(h, report);
-}
-
-/* Bits of 1 and 4 have the sum of those of 2 and 2: the triangle (3,2) (4,2) (4,3) is no twin. */
+/* Under that key the hash of a corner with v = 0 is its u's bits by its point's number, with the last bit changed. The
+ * point at (4, 0) has number 8 and that at (5, 0) 10: 11 more there and 9 less here are the same sum. */
 TEST(what_has_the_hash_of_a_twin_is_none)
 {
-	const float other[3][2] = {{3, 1}, {4, 4}, {4, 3}};
 	hand_mesh *h = make_grid();
-	cut_out(h, 2 * (2 * N + 2), other);
+	set_uv(h, at(N, 0), N - 1.25f, 0);
+	float a = N - 1, b = N - 1.25f;
+	for (int i = 0; i < 8 + 3; i++)
+		a = nextafterf(a, N);
+	for (int i = 0; i < 10 - 1; i++)
+		b = nextafterf(b, 0);
+	const uint32_t back[2] = {hand_vertex(h, N - 1, 0, 0, a, 0), hand_vertex(h, N, 0, 0, b, 0)};
+	hand_triangle(h, back[1], back[0], at(N, 1));
 	nt_report *report = hand_report_by_equal_hashes(h);
+	assert_int_equal(report->meshes[0].island_count, 2);
 	assert_int_equal(hand_finding(report, NT_CODE_UV_FLIPPED_TRIANGLE)->count, 1);
 	hand_free(h, report);
 }
@@ -159,86 +161,125 @@ TEST(what_is_wound_like_two_fifths_of_its_island_is_not_flipped)
 	hand_free(h, report);
 }
 
-/* Moves the texture coordinates of the first rows, which become an island of their own. */
-static void move_rows(hand_mesh *h, uint32_t rows, float du)
+/* One corner or more of the grid moved: what is told of it. 50 triangles of area and UV area 1/2 each. */
+TEST(triangles_area_and_texels_say_whether_one_is_flipped)
 {
-	for (uint32_t t = 0; t < 2 * N * rows; t++) {
-		float uv[3][2];
-		for (uint32_t k = 0; k < 3; k++) {
-			uv[k][0] = h->texcoords[h->indices[3 * t + k]][0] + du;
-			uv[k][1] = h->texcoords[h->indices[3 * t + k]][1];
-		}
-		cut_out(h, t, uv);
-	}
-}
-
-/* A single triangle is wound the other way in each. */
-TEST(area_texels_and_the_island_around_say_whether_one_is_flipped)
-{
-	enum { SEVENTH, FIFTH, HALF_OF_AREA, MANY_TEXELS, LONE, BETWEEN_HALVES, BETWEEN_ISLANDS, INVISIBLE, NEEDLE,
-		WIDER, COUNT };
-	static const size_t flipped[COUNT] = {[SEVENTH] = 1, [LONE] = 1, [WIDER] = 1};
-	/* of the column that is folded over, of the triangle, of both folded rows and the triangle */
-	static const size_t seams[COUNT] = {[SEVENTH] = 1, [FIFTH] = 1, [HALF_OF_AREA] = 1, [MANY_TEXELS] = 1,
-		[BETWEEN_HALVES] = 3};
-	static const float swapped[3][2] = {{2, 2}, {3, 3}, {3, 2}}; /* with coordinates of its own */
+	enum { SEVENTH, EIGHT, TWO, THREE, HALF_OF_AREA, MANY_TEXELS, TEN, NINE, INVISIBLE, VISIBLE, TWO_INVISIBLE,
+		TEXEL, LESS, LOW, LOWER, NEEDLE, WIDER, COUNT };
+	static const size_t flipped[COUNT] = {[SEVENTH] = 1, [TWO] = 2, [TEN] = 1, [VISIBLE] = 1, [TEXEL] = 1,
+		[LOW] = 1, [WIDER] = 1};
+	/* of the column that is folded over, and of triangles that are too large a share */
+	static const size_t seams[COUNT] = {[SEVENTH] = 1, [EIGHT] = 3, [THREE] = 1, [HALF_OF_AREA] = 2,
+		[MANY_TEXELS] = 1, [NINE] = 1};
 	for (int i = 0; i < COUNT; i++) {
 		hand_mesh *h = make_grid();
-		if (i <= HALF_OF_AREA || i == INVISIBLE)
+		if (i <= EIGHT || i == HALF_OF_AREA || (i >= TEN && i <= TWO_INVISIBLE))
 			set_uv(h, at(0, N), 0.75f, N - 0.75f);
-		/* 6 more are mirrored, at the other side: 7 of 50; or 10 */
-		for (uint32_t y = i == FIFTH ? 0 : 2; y < N && i <= HALF_OF_AREA; y++)
+		/* 6 more are mirrored, at the other side, and one or two: 7 or 8 of 50 */
+		for (uint32_t y = 2; y < N && (i <= EIGHT || i == HALF_OF_AREA); y++)
 			set_uv(h, at(N, y), N - 1.6f, (float)y);
+		if (i == EIGHT)
+			set_uv(h, at(N, 0), N - 0.75f, 0.75f);
 		for (uint32_t y = 0; y <= N && i == HALF_OF_AREA; y++)
 			h->positions[at(N, y)][0] = 2 * N - 2;
+		if (i == TWO) /* both triangles at that corner, or all three */
+			set_uv(h, at(0, 0), 1.25f, 1.5f);
+		if (i == THREE)
+			set_uv(h, at(1, 0), 2.1f, 2.2f);
 		if (i == MANY_TEXELS) /* nearly half of them all */
 			set_uv(h, at(N, 0), -16, 21);
-		for (uint32_t v = 0; v <= at(N, N) && i == BETWEEN_HALVES; v++)
-			if (h->texcoords[v][1] < 2 || h->texcoords[v][1] > 3)
-				h->texcoords[v][1] = (h->texcoords[v][1] < 2 ? 1 : 7.5f) - h->texcoords[v][1];
-		if (i >= LONE && i <= BETWEEN_ISLANDS)
-			cut_out(h, 2 * (2 * N + 2), swapped);
-		if (i == BETWEEN_ISLANDS) /* below it is another one */
-			move_rows(h, 2, 200);
-		/* the longest side is a root of two long; over it the third corner is 0.009 or 0.011 of that high */
-		if (i == NEEDLE || i == WIDER)
-			set_uv(h, at(0, N), i == NEEDLE ? 0.509f : 0.511f, i == NEEDLE ? N - 0.509f : N - 0.511f);
-		if (i == INVISIBLE) { /* beside a square of 62 500: the triangle is 0.5 of that and 25 more */
+		/* the last row alone: 10 triangles; or without a triangle */
+		if (i == TEN || i == NINE) {
+			h->mesh.face_count = i == TEN ? 2 * N : 2 * N - 1;
+			memmove(h->indices, h->indices + 3 * 2 * N * (N - 1), sizeof(uint32_t[3]) * 2 * N);
+			h->mesh.corner_count = 3 * h->mesh.face_count;
+			set_uv(h, at(0, N), 0.75f, N - 0.75f);
+		}
+		/* beside a square of 62 500 or 49 952: the triangle is 0.5 of that and 25 more */
+		if (i >= INVISIBLE && i <= TWO_INVISIBLE) {
+			const float side = i == VISIBLE ? 223.5f : 250;
 			for (uint32_t k = 0; k < 4; k++)
-				hand_vertex(h, 250.0f * (float)(1 + k % 2), 250.0f * (float)(k / 2), 0,
+				hand_vertex(h, 250 + side * (float)(k % 2), side * (float)(k / 2), 0,
 					(float)(100 + k % 2), (float)(k / 2));
 			const uint32_t first = (N + 1) * (N + 1);
 			hand_quad(h, first, first + 1, first + 3, first + 2);
 		}
+		if (i == TWO_INVISIBLE)
+			set_uv(h, at(N, 0), N - 0.75f, 0.75f);
+		/* `over` the diagonal of a square that is `side` texels wide: over * side * side texels of UV area, and
+		 * over * side * root 2 high. One texel, and half a texel high */
+		if (i >= TEXEL && i <= LOWER) {
+			const float side = i <= LESS ? 1 : 512;
+			const float over = i <= LESS ? 1 : 0.5f / sqrtf(2) / 512;
+			const float most = 0.5f + (i == TEXEL || i == LOW ? 1.001f : 0.999f) * over;
+			set_uv(h, at(N, 0), N - most, most);
+			for (uint32_t v = 0; v < h->mesh.vertex_count; v++)
+				set_uv(h, v, side / 2048 * h->texcoords[v][0], side / 2048 * h->texcoords[v][1]);
+		}
+		/* in space, 1 long and 1/32 high, or more */
+		if (i == NEEDLE || i == WIDER) {
+			set_uv(h, at(N, 0), N - 0.75f, 0.75f);
+			h->positions[at(N, 0)][0] = N - 0.5f;
+			h->positions[at(N, 0)][1] = 0.5f - (i == NEEDLE ? 0.999f : 1.001f) * 0x1p-5f;
+			h->positions[at(N - 1, 0)][1] = h->positions[at(N, 1)][1] = 0.5f;
+		}
 		nt_report *report = hand_report(h, NULL);
-		assert_int_equal(hand_findings(report, NT_CODE_UV_FLIPPED_TRIANGLE), flipped[i]);
-		assert_int_equal(hand_findings(report, NT_CODE_UV_MIRROR_SEAM), seams[i]);
+		const size_t told = hand_findings(report, NT_CODE_UV_FLIPPED_TRIANGLE)
+			? hand_finding(report, NT_CODE_UV_FLIPPED_TRIANGLE)->count : 0;
+		if (told != flipped[i] || hand_findings(report, NT_CODE_UV_MIRROR_SEAM) != seams[i])
+			fail_msg("row %d: %zu flipped, %zu seams", i, told,
+				hand_findings(report, NT_CODE_UV_MIRROR_SEAM));
 		hand_free(h, report);
 	}
 }
 
-/* Two islands of 29 quads each; a quad between them is mirrored, and lies against the first one at three sides. */
-TEST(which_island_is_around_follows_from_sides_and_not_from_the_order_of_faces)
+/*
+ * Coordinates that lie on a grid were rounded to it, by up to half a step. The grid's quads are 16 steps wide;
+ * triangles beside them have one value more, or two. A corner at (71, 8) is over the line from (64, 0) to (80, 16): the
+ * determinant is 7 * 16 - 8 * 16 = -16, and rounding changes it by a step times 16 + 16, to first order; of (71, 9) it
+ * is -32, of (70, 9) -48.
+ */
+TEST(what_rounding_to_a_grid_may_have_turned_is_not_flipped)
 {
-	enum { WIDE = 12, HIGH = 5 };
-	enum { FIRST, SECOND, BETWEEN };
-	for (int backwards = 0; backwards < 2; backwards++) {
-		hand_mesh *h = hand_new();
-		uint32_t vertices[BETWEEN + 1][WIDE + 1][HIGH + 1];
-		for (int island = FIRST; island <= BETWEEN; island++)
-			for (int x = 0; x <= WIDE; x++)
-				for (int y = 0; y <= HIGH; y++)
-					vertices[island][x][y] = hand_vertex(h, (float)x, (float)y, 0,
-						(float)(100 * island + (island == BETWEEN ? -x : x)), (float)y);
-		for (int i = 0; i < WIDE * HIGH - 1; i++) { /* all but the last */
-			const int place = backwards ? WIDE * HIGH - 2 - i : i, x = place / HIGH, y = place % HIGH;
-			const int island = x == 5 && y == 2 ? BETWEEN : x < WIDE / 2 ? FIRST : SECOND;
-			uint32_t (*const of)[HIGH + 1] = vertices[island];
-			hand_quad(h, of[x][y], of[x + 1][y], of[x + 1][y + 1], of[x][y + 1]);
+	static const struct {
+		const char *label;
+		float u, v;         /* of the corner */
+		int values, last;   /* beside the quads: how many, and the greatest */
+		float scale, offset;
+		size_t flipped;
+	} rows[] = {
+		{"within", 71, 8, 1, 255, 1, 0, 0},
+		{"at the bound", 71, 9, 1, 255, 1, 0, 0},
+		{"above it", 70, 9, 1, 255, 1, 0, 1},
+		{"too few steps", 71, 8, 1, 254, 1, 0, 1},
+		{"eight values: -2 * 16, up to 16 and 18", 62, 0, 2, 255, 1, 0, 0},
+		{"seven of v: -2 * 16, above 16", 62, 0, 1, 255, 1, 0, 1},
+		{"v is not on the grid: 7 * 16 - 8.3 * 16 = -20.8, above 16", 71, 8.3f, 2, 255, 1, 0, 1},
+		{"nor is u: -20.8", 70.7f, 8, 2, 255, 1, 0, 1},
+		{"steps of which floats are roundings", 71, 8, 2, 255, 1 / 1023.0f, 0, 0},
+		{"and one above", 70, 9, 2, 255, 1 / 1023.0f, 0, 1},
+		{"a step of 2^-17 of the values", 71, 8, 2, 255, 1, 0x1p17f, 0},
+		{"a step of 2^-18, which may be rounding of floats", 71, 8, 2, 255, 1, 0x1p18f, 1}};
+	for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+		hand_mesh *h = make_grid();
+		for (uint32_t v = 0; v <= at(N, N); v++)
+			set_uv(h, v, 16 * h->texcoords[v][0], 16 * h->texcoords[v][1]);
+		set_uv(h, at(N, 0), rows[i].u, rows[i].v);
+		float before = 80;
+		for (int k = 0; k < rows[i].values; k++) {
+			const float x = (float)(k + 1 < rows[i].values ? 97 : rows[i].last);
+			const uint32_t first = hand_vertex(h, before, 0, 0, before, before);
+			hand_vertex(h, x, 0, 0, x, before);
+			hand_triangle(h, first, first + 1, hand_vertex(h, x, 1, 0, x, x));
+			before = x;
 		}
+		for (uint32_t v = 0; v < h->mesh.vertex_count; v++)
+			set_uv(h, v, rows[i].scale * h->texcoords[v][0] + rows[i].offset,
+				rows[i].scale * h->texcoords[v][1] + rows[i].offset);
 		nt_report *report = hand_report(h, NULL);
-		assert_int_equal(report->meshes[0].island_count, 3);
-		assert_int_equal(hand_finding(report, NT_CODE_UV_FLIPPED_TRIANGLE)->count, 2);
+		if (hand_findings(report, NT_CODE_UV_FLIPPED_TRIANGLE) != rows[i].flipped ||
+			mirror_findings(report))
+			fail_msg("%s: %zu flipped", rows[i].label, hand_findings(report, NT_CODE_UV_FLIPPED_TRIANGLE));
 		hand_free(h, report);
 	}
 }
