@@ -37,12 +37,12 @@ static const double FLIPPED_SHARE = 0.05, SINGLE_SHARE = 0.1, MINORITY_SHARE = 0
 
 /*
  * A triangle is not told if nobody sees it: it covers less than a texel, or is less than half a texel high, where the
- * texture has 2048 x 2048; or it is a needle in space, whose height is up to a thirty-second of its length. Two
+ * texture has 2048 x 2048; or it is a needle in space, whose height is up to a twentieth of its length. Two
  * readers who did not write this judged twenty flipped triangles of public files each. They agreed with all of half a
  * texel or more that were no rounding and no needles (the lowest has 0.54), and refused lower ones, and needles up to
  * a fiftieth; the author looked at eighty more between these limits.
  */
-static const double TEXEL = 1.0 / 2048.0, LEAST_HEIGHT = 0.5, NEEDLE = 1.0 / 32.0;
+static const double TEXEL = 1.0 / 2048.0, LEAST_HEIGHT = 0.5, NEEDLE = 0.05;
 
 /* How much is wound one way. */
 typedef struct extent {
@@ -64,9 +64,9 @@ typedef struct patches {
 	patch *items;
 	uint32_t count;
 	extent (*islands)[2]; /* [island_count] mirrored, unmirrored */
-	bool asked;           /* whether the grid is known */
-	double step[2];       /* of the grid on which coordinates lie along an axis; 0: none */
-	double origin[2], noise[2];
+	double range[2][2];   /* of coordinates along an axis */
+	bool asked;           /* whether their grid is known */
+	double step[2], noise[2]; /* 0: there is none */
 } patches;
 
 static nt_status number_patches(nt_check *check, patches *p)
@@ -140,24 +140,33 @@ static double find_step(double *values, size_t count, double noise)
 	return is_grid && range >= LEAST_STEPS * step ? step : 0.0;
 }
 
-/* Asked for once, if there is a small triangle in a patch. */
-static void find_grid(const nt_surface *s, patches *p)
+/* Coordinates along an axis, of some corners, and their range. */
+static size_t take_values(const nt_surface *s, int axis, double values[SAMPLES], double range[2])
 {
 	const size_t sides = 3 * s->triangle_count, stride = (sides + SAMPLES - 1) / SAMPLES;
+	size_t count = 0;
+	range[0] = INFINITY;
+	range[1] = -INFINITY;
+	for (size_t side = 0; side < sides; side += stride) {
+		const double value = nt_side_texcoord(s, side)[axis];
+		if (!isfinite(value))
+			continue;
+		values[count++] = value;
+		range[0] = fmin(range[0], value);
+		range[1] = fmax(range[1], value);
+	}
+	return count;
+}
+
+/* Asked for once, if a triangle is so small that a grid may have turned it: values are put in order for that. */
+static void find_grid(const nt_surface *s, patches *p)
+{
 	for (int axis = 0; axis < 2 && !p->asked; axis++) {
-		double values[SAMPLES], reach = 0.0;
-		size_t count = 0;
-		for (size_t side = 0; side < sides; side += stride) {
-			const double value = nt_side_texcoord(s, side)[axis];
-			if (!isfinite(value))
-				continue;
-			values[count++] = value;
-			reach = fmax(reach, fabs(value));
-		}
+		double values[SAMPLES];
+		const size_t count = take_values(s, axis, values, p->range[axis]);
 		/* of a difference: of two values, each made by two roundings to float */
-		p->noise[axis] = 0x1p-22 * reach;
+		p->noise[axis] = 0x1p-22 * fmax(fabs(p->range[axis][0]), fabs(p->range[axis][1]));
 		p->step[axis] = find_step(values, count, p->noise[axis]);
-		p->origin[axis] = count ? values[0] : 0.0;
 	}
 	p->asked = true;
 }
@@ -170,6 +179,7 @@ static void find_grid(const nt_surface *s, patches *p)
  */
 static bool may_be_turned(const nt_surface *s, patches *p, size_t t)
 {
+	const double determinant = 2.0 * uv_area(s, t);
 	double size[2], error = 0.0;
 	const float *const uv[3] = {nt_side_texcoord(s, 3 * t), nt_side_texcoord(s, 3 * t + 1),
 		nt_side_texcoord(s, 3 * t + 2)};
@@ -178,16 +188,21 @@ static bool may_be_turned(const nt_surface *s, patches *p, size_t t)
 	for (int axis = 0; axis < 2; axis++)
 		size[axis] = fmax(uv[0][axis], fmax(uv[1][axis], uv[2][axis])) -
 			fmin(uv[0][axis], fmin(uv[1][axis], uv[2][axis]));
+	for (int axis = 0; axis < 2; axis++)
+		error += (p->range[axis][1] - p->range[axis][0]) / LEAST_STEPS * size[1 - axis];
+	if (!(determinant <= error))
+		return false;
 	find_grid(s, p);
+	error = 0.0;
 	for (int axis = 0; axis < 2; axis++) {
 		bool lies = p->step[axis] > 0.0;
 		for (int k = 0; k < 3 && lies; k++) {
-			const double all = uv[k][axis] - p->origin[axis];
+			const double all = uv[k][axis] - p->range[axis][0];
 			lies = fabs(all - round(all / p->step[axis]) * p->step[axis]) <= p->noise[axis];
 		}
 		error += lies ? p->step[axis] * size[1 - axis] : 0.0;
 	}
-	return 2.0 * uv_area(s, t) <= error;
+	return determinant <= error;
 }
 
 /* ---- which patches are flipped ---- */
@@ -394,6 +409,10 @@ nt_status nt_check_flips(nt_check *check)
 		return status;
 	memset(check->flipped, 0, words * sizeof *check->flipped);
 	memset(check->twins, 0, words * sizeof *check->twins);
+	for (int axis = 0; axis < 2; axis++) {
+		double values[SAMPLES];
+		take_values(&check->surface, axis, values, p.range[axis]);
+	}
 	measure_patches(check, &p);
 	choose_flipped(check, &p);
 	status = find_twins(check, &p);

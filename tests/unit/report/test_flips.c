@@ -216,11 +216,11 @@ TEST(triangles_area_and_texels_say_whether_one_is_flipped)
 			for (uint32_t v = 0; v < h->mesh.vertex_count; v++)
 				set_uv(h, v, side / 2048 * h->texcoords[v][0], side / 2048 * h->texcoords[v][1]);
 		}
-		/* in space, 1 long and 1/32 high, or more */
+		/* in space, 1 long and 1/20 high, or more */
 		if (i == NEEDLE || i == WIDER) {
 			set_uv(h, at(N, 0), N - 0.75f, 0.75f);
 			h->positions[at(N, 0)][0] = N - 0.5f;
-			h->positions[at(N, 0)][1] = 0.5f - (i == NEEDLE ? 0.999f : 1.001f) * 0x1p-5f;
+			h->positions[at(N, 0)][1] = 0.5f - (i == NEEDLE ? 0.999f : 1.001f) * 0.05f;
 			h->positions[at(N - 1, 0)][1] = h->positions[at(N, 1)][1] = 0.5f;
 		}
 		nt_report *report = hand_report(h, NULL);
