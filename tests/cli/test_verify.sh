@@ -39,6 +39,13 @@ run --verify "$WORK/layouts/plain.gltf" out.gltf
 exits 0
 says_not NOT_VERIFIED
 
+scene "a buffer that nobody uses and that the run may not look for is none of nmtan's faults"
+gltf "$WORK/layouts/plain.gltf" outside 'g.buffers.push({byteLength: 4})'
+sed -i 's/{"byteLength": *4}/{"byteLength":4,"uri":"..\/nowhere.bin"}/' outside.gltf
+run --verify outside.gltf out.gltf
+exits 0
+says "[NOT_VERIFIED]"
+
 scene "a data URI that tinygltf cannot read is no name of a file"
 mkdir -p data:application
 printf 1234 >data:application/gltf-buffer,AAAA
