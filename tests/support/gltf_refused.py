@@ -69,6 +69,7 @@ g['bufferViews'] = None|/bufferViews|
 g['buffers'][0]['byteLength'] += 100|/buffers/0|bytes are there
 del g['buffers'][0]['byteLength']|/buffers/0|"byteLength" is missing
 del g['buffers'][0]['uri']|/buffers/0|the buffer has no uri
+[x.pop('bufferView', 0) for x in a]; g['meshes'][0]['primitives'].append({**p, 'attributes': dict(p['attributes'], POSITION=len(a), NORMAL=len(a) + 1, TEXCOORD_0=len(a) + 2, COLOR_0=len(a) + 3, _ID=len(a) + 4)}); del p['targets'], g['meshes'][0]['primitives'][1]['targets']; a += [dict(a[p['attributes'][n]]) for n in ('POSITION', 'NORMAL', 'TEXCOORD_0', 'COLOR_0', '_ID')]; g['bufferViews'], g['buffers'] = [], []
 g['buffers'][0]['uri'] = 3|/buffers/0/uri|an integer, expected a string
 g['buffers'][0]['uri'] = 'data:;base64,A'|/buffers/0|
 g['buffers'] = []|/bufferViews/0|refers to buffers[0], there are 0
@@ -350,7 +351,7 @@ def misunderstood(nmtan):
 def main():
     os.makedirs('bad')
     expected = make()
-    done = subprocess.run([sys.argv[1], '-v', '--only=all', '-d', 'good', *expected], stdin=subprocess.DEVNULL, capture_output=True)
+    done = subprocess.run([sys.argv[1], '-v', '--only=all', '--verify', '-d', 'good', *expected], stdin=subprocess.DEVNULL, capture_output=True)
     said = done.stderr.decode().split('\n')
     # a sanitizer's code is another
     faults = [] if done.returncode == 3 else ['ends with %d' % done.returncode]

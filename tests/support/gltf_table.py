@@ -1423,6 +1423,8 @@ def convert(name, program, stride):
     words = sum(words, [])
     wanted, unwanted = [word for word in words if word[0] != '!'], [word[1:] for word in words if word[0] == '!']
     files = [files[stem] for stem in stems if any(word in stem for word in wanted or ['']) and not any(word in stem for word in unwanted)]
+    if not files:
+        return [] if stride > 1 else ['no file has what is asked for']
 
     def run(options, folder, files):
         done = subprocess.run([program, *options.split(), '-d', folder, *files], stdin=subprocess.DEVNULL,
