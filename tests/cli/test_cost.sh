@@ -67,7 +67,7 @@ grows() {
 
 # These have smaller inputs, too: what they see is seen in thousands.
 case $NMTAN in
-*/release/*) factor=1 blocks=20000 elements=100000 materials=100000 strip=200000 faces=100000 windows=1500 parts=100000 ;;
+*/release/*) factor=1 blocks=8000 elements=40000 materials=40000 strip=80000 faces=80000 windows=600 parts=40000 ;;
 *) factor=8 blocks=2000 elements=10000 materials=10000 strip=20000 faces=20000 windows=100 parts=10000 ;;
 esac
 
@@ -75,7 +75,7 @@ scene "$blocks Draco blocks are found in linear time"
 inputs usemtl $blocks blocks.obj
 run -q --only=all blocks.obj blocks.glb
 run -q --only=all --existing=replace --draco=edgebreaker blocks.glb draco.glb
-within 8 300 -q --only=all --existing=replace draco.glb out.glb
+within 4 150 -q --only=all --existing=replace draco.glb out.glb
 exits 0
 
 scene "$faces triangles at one place are compressed in linear time, and a finding says how"
@@ -214,12 +214,12 @@ ending=ply
 grows properties $((elements / 4)) IN out.ply
 ending=obj
 inputs elements $elements e.ply
-within 15 300 e.ply out.ply
+within 6 150 e.ply out.ply
 exits 0
 
 scene "an OBJ of $materials materials makes a document of as many primitives"
 inputs usemtl $materials m.obj
-within 30 300 -q m.obj m.glb
+within 12 150 -q m.obj m.glb
 exits 0
 is "$(gltf m.glb 'g.meshes[0].primitives.length')" $materials
 # at most 36 times the input: the geometry and the JSON of five accessors for every line of 34 bytes
@@ -228,7 +228,7 @@ is "$(gltf m.glb 'g.meshes[0].primitives.length')" $materials
 scene "a check of $blocks primitives takes linear time"
 inputs usemtl $blocks checked.obj
 run -q --only=all checked.obj checked.glb
-within 8 300 -q --check checked.glb
+within 4 150 -q --check checked.glb
 exits 0
 
 scene "10 MB of JSON that nobody asks for take at most 48 bytes for each number and 80 for each member"
@@ -244,7 +244,7 @@ exits 0
 
 scene "an OBJ whose $blocks materials have two images each"
 python3 "$ROOT/tests/support/cost_inputs.py" images $blocks i.obj # and i.obj.mtl
-within 6 800 -q i.obj i.gltf
+within 4 400 -q i.obj i.gltf
 exits 0
 is "$(gltf i.gltf 'g.materials.length')" $blocks
 
@@ -282,7 +282,7 @@ is "$(value s.json '{f["alike"] for f in r["files"][0]["findings"] if f["code"] 
 
 scene "$windows primitives with different parts of one index array are solved some at a time"
 inputs windows "$windows" w.glb
-within 40 800 -q --only=all w.glb out.glb
+within 16 800 -q --only=all w.glb out.glb
 exits 0
 is "$(gltf out.glb 'g.meshes[0].primitives.length')" "$windows"
 rm out.glb
@@ -312,16 +312,16 @@ rm -f out.glb out.ply
 
 scene "$parts primitives with accessors of their own"
 inputs scene "$parts" p.glb
-within 10 460 -q p.glb out.glb
+within 4 190 -q p.glb out.glb
 exits 0
 is "$(gltf out.glb 'g.accessors.length')" $((5 * parts))
-within 20 680 -q --check p.glb
+within 8 280 -q --check p.glb
 exits 0
 rm out.glb
 
 scene "$((parts / 2)) primitives whose vertices are split"
 inputs scene $((parts / 2)) p.glb 5
-within 10 500 -q p.glb out.glb
+within 4 210 -q p.glb out.glb
 exits 0
 is "$(gltf out.glb 'g.accessors.length')" $((5 * parts / 2))
 is "$(gltf out.glb 'g.accessors[0].count > 36')" true
@@ -329,7 +329,7 @@ rm out.glb
 
 scene "the page of a long strip grows its sample in linear time"
 inputs strip $strip strip.obj
-within 30 1500 --check --report=s.html --fail-on=never strip.obj
+within 12 600 --check --report=s.html --fail-on=never strip.obj
 exits 0
 
 scene "a picture of an index takes time for rows, however many triangles lie on a pixel"

@@ -22,13 +22,16 @@ is "$(gltf sparse.glb "$forms")" '{"5126 false true false":100}'
 # each vertex and its six neighbours, at most
 is "$(gltf sparse.glb 'g.meshes[0].primitives[0].targets.every((t) => { const n = g.accessors[t.TANGENT].sparse.count;
 	return n > 5 && n <= 35; })')" true
-run --morph=drop "$WORK/in/moved.gltf" moved.glb
-python3 "$ROOT/tests/support/gltf_morphs.py" sparse.glb 7 moved.glb >"$WORK/err.txt" 2>&1 ||
-	wrong "$(cat "$WORK/err.txt")"
-for existing in repair replace; do
-	run --existing=$existing sparse.glb again.glb
-	same sparse.glb again.glb
-done
+# the values are the same under sanitizers, which take seconds for each
+if [[ $BUILD != *sanitize* ]]; then
+	run --morph=drop "$WORK/in/moved.gltf" moved.glb
+	python3 "$ROOT/tests/support/gltf_morphs.py" sparse.glb 7 moved.glb >"$WORK/err.txt" 2>&1 ||
+		wrong "$(cat "$WORK/err.txt")"
+	for existing in repair replace; do
+		run --existing=$existing sparse.glb again.glb
+		same sparse.glb again.glb
+	done
+fi
 
 scene "dense deltas that are there give way to sparse ones of bytes, and nothing of them is left"
 for existing in replace repair; do

@@ -38,7 +38,7 @@ for words in "--check $data/mirrored_cube.obj" "--check --diff $data/quad.obj $d
 done
 
 # A browser shows the same for every build that made the page; sanitizers look at its making alone.
-case $BUILD in *sanitize*) browses=false side=60 ;; *) browses=true side=708 ;; esac
+case $BUILD in *sanitize*) browses=false side=60 ;; *) browses=true side=300 ;; esac
 
 # The page as a browser without modules makes it.
 shown() {

@@ -69,6 +69,7 @@ faulty_inputs
 printf '%s\n' in/*.gltf >names
 run -q --check --fail-on=never --report=old.json in/kept.gltf in/scan.obj
 mv old.json old
+row=0
 while IFS='|' read -r words inputs writes; do
 	case $inputs in
 	all) inputs=$(echo in/*.obj in/*.gltf in/*.glb in/*.ply) ;;
@@ -79,6 +80,10 @@ while IFS='|' read -r words inputs writes; do
 	--output=* | --in-place | --directory* | --keep-tree*) where= ;;
 	--update*) conversion= ;; # with which there is no report
 	esac
+	name=${words%%[ =]*}
+	echo "${name#--}" >>../told
+	# all but each fifth are asked of one build
+	[[ $BUILD != *sanitize* ]] || ((row++ % 5 == 0)) || continue
 	cp -R in kept
 	"$NMTAN" --check -q $words --fail-on=never $where --report=checked.json $inputs 2>../err.txt || wrong "--check $words: $?"
 	"$NMTAN" --check -q $words --fail-on=never --report=alone.json $inputs 2>../err.txt || wrong "--check $words: $?"
@@ -90,8 +95,6 @@ while IFS='|' read -r words inputs writes; do
 	is "$words: $(found alone.json "$writes" "$placed")" "$words: $(found converted.json "$writes" "$placed")"
 	rm -rf ./*.json in out out.glb rec dep
 	mv kept in
-	name=${words%%[ =]*}
-	echo "${name#--}" >>../told
 done <<'END'
 --only=all|all
 --existing=keep|all|w

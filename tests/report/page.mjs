@@ -4,7 +4,7 @@
 //
 //   two.html    object "plain" (unmirrored, u 0 to 0.4) and object "</script>..." (mirrored, u 0.6 to 1)
 //   head.html   data/head.obj, whose mirror seams lie in x = 0
-//   large.html  a grid of a million triangles, mirrored at its middle
+//   large.html  a grid of 180 000 triangles, mirrored at its middle
 //   stacked.html  20 000 quads, each with all of the texture
 //   many.html   500 files
 //   pages/      index.html, and a page of each of head.obj, bad.obj, 30 quads and a name that tries to be a script
@@ -314,33 +314,40 @@ async function clickTexture(page, u, v) {
 	await page.close();
 }
 
-// ---- a million triangles ----
+// ---- a large mesh ----
 
 {
-	const page = await open('large.html'), g = await page.evaluate(() => {
-		const g = window.nmtanReport.geometry(), corners = [0, 708, 709 * 708, 709 * 709 - 1];
+	// a picture seems to take long, whatever the machine is: then a part of the triangles is drawn while they turn, which is there all over
+	const page = await open('large.html', {before: () => { let now = 0; performance.now = () => now += 100; }}), g = await page.evaluate(() => {
+		const g = window.nmtanReport.geometry();
 		// the area that the outlines enclose is that of the triangles
 		const area = loops => loops.reduce((sum, loop) => sum + loop.reduce((s, v, i) => {
 			const w = loop[(i + 1) % loop.length], uv = g.texcoords;
 			return s + (uv[2 * v] * uv[2 * w + 1] - uv[2 * w] * uv[2 * v + 1]) / 2;
 		}, 0), 0);
 		return {triangles: g.triangles, whole: g.whole, regions: g.regions.length, loops: g.regions.map(r => r.loops.length),
-			points: g.regions.map(r => r.loops[0].length), areas: g.regions.map(r => area(r.loops)), corners};
+			points: g.regions.map(r => r.loops[0].length), areas: g.regions.map(r => area(r.loops))};
 	});
-	check(g.triangles === 1002528 && g.whole, 'all triangles are there: ' + g.triangles);
-	check(g.regions === 2 && g.loops.join() === '1,1' && g.points.join() === '2124,2124', 'two outlines of 2 (354 + 708) points: ' + g.points);
+	check(g.triangles === 180000 && g.whole, 'all triangles are there: ' + g.triangles);
+	check(g.regions === 2 && g.loops.join() === '1,1' && g.points.join() === '900,900', 'two outlines of 2 (150 + 300) points: ' + g.points);
 	check(g.areas.every(a => Math.abs(Math.abs(a) - 0.5) < 1e-4), 'each encloses half of the texture: ' + g.areas);
 	await page.click('[data-code=UV_MIRROR_SEAM] .finding');
 	await page.waitForFunction(() => window.nmtanReport.selection());
 	await expect(async () => await ask(page, 'visible') > 0, 'its seam is seen');
-	// SwiftShader takes 0.2 s for a million triangles: while they turn a part of them is drawn, which is there all over
-	for (let i = 0; i < 8; i++) {
-		await ask(page, 'turn', 0.01);
-		await frames(page);
-	}
-	const turned = await ask(page, 'drawn');
-	check(turned > 4000 && turned < 100000, 'few triangles turn: ' + turned);
-	await expect(async () => await ask(page, 'drawn') === 1002528, 'all of them rest');
+	let turned;
+	await expect(async () => {
+		turned = await page.evaluate(async () => {
+			const drawn = [];
+			for (let i = 0; i < 8; i++) {
+				window.nmtanReport.turn(0.01);
+				await new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)));
+				drawn.push(window.nmtanReport.drawn());
+			}
+			return Math.min(...drawn);
+		});
+		return turned > 4000 && turned < 40000;
+	}, () => 'few triangles turn: ' + turned);
+	await expect(async () => await ask(page, 'drawn') === 180000, 'all of them rest');
 	if (shots) await page.screenshot({path: shots + '/large.png'});
 	await page.close();
 }
@@ -818,7 +825,7 @@ const text = page => page.evaluate(() => {
 	return body.textContent.replace(/\s+/g, ' ').trim();
 });
 
-for (const name of web ? ['two.html', 'head.html', 'many.html', 'diff.html'] : []) {
+for (const name of web ? ['two.html', 'many.html', 'diff.html'] : []) {
 	const pages = [await open(name, {viewport: {width: 500, height: 500}}), await openFramed(name)];
 	const both = async what => {
 		await Promise.all(pages.map(rest));
@@ -836,7 +843,7 @@ for (const name of web ? ['two.html', 'head.html', 'many.html', 'diff.html'] : [
 		for (const page of pages) await page.evaluate(hash => { location.hash = hash; }, hash);
 		await both(hash);
 	}
-	const modes = await pages[0].locator('#mode').isVisible()
+	const modes = name === 'two.html' // their notes are the same script's for all pages
 		? await pages[0].locator('#mode option').evaluateAll(options => options.map(option => option.value)) : [];
 	for (const mode of modes) {
 		for (const page of pages) await page.selectOption('#mode', mode);
