@@ -1346,7 +1346,7 @@ def check(options, before, after, fault, compressed=''):
             fault('accessor %d of nobody has other values' % i)
     dead_now, loose_now = check_bytes(b, fault)
     # what lies between attributes of others cannot go, nor what shares a view with their bytes
-    if dead_now > dead + 3 * len(b.g.get('bufferViews', [])) + 16 * ('--precision' in options) and not any(
+    if dead_now > dead + (3 + 12 * ('--precision' in options)) * len(b.g.get('bufferViews', [])) and not any(
             word in before for word in ('together', 'tight', 'part_elsewhere')) and '=drop' not in options:
         fault('%d bytes that nobody uses, there were %d' % (dead_now, dead))
     # of several accessors over some of the same bytes one may be left, and one that was the TANGENT of what is solved with others
