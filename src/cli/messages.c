@@ -408,8 +408,6 @@ static void append_skipped(nt_buffer *out, const nt_summary *s)
 static void append_findings_count(nt_buffer *out, const nt_summary *s)
 {
 	size_t counts[3] = {0};
-	for (size_t i = 0; !s->report && i < s->findings.count; i++)
-		counts[shown_severity(&s->findings.items[i], NULL, (nt_style){0})]++;
 	if (s->report)
 		memcpy(counts, s->report->by_severity, sizeof counts);
 	size_t known = 0, hidden = 0;

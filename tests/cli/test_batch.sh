@@ -11,6 +11,16 @@ says "3 of 3 done"
 run "$data/plates.glb" single.glb
 same single.glb out/plates.glb
 
+scene "times and bytes of many are summed"
+cp "$data/plates.gltf" "$data/plates.bin" "$data/bumps.png" .
+cp plates.gltf second.gltf
+counts() { sed -n 's/^\([0-9].*bytes read\|not decoded:\)/\1/p' "$WORK/err.txt" | grep -o '[0-9]*' | xargs; }
+run --timing -d out plates.gltf
+one=$(counts)
+run --timing -d many plates.gltf second.gltf
+is "$(counts)" "$(for n in $one; do echo $((2 * n)); done | xargs)"
+is "$(wc -w <<<"$one")" 4
+
 scene "failures do not stop the others and are named at the end"
 printf 'v 0 0 0\nv 1 0 0\nf 1 2 3\n' >bad.obj
 run -d out missing.obj "$data/quad.obj" bad.obj "$data/plates.glb"

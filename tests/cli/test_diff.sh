@@ -97,5 +97,8 @@ run --check --diff --baseline=b.json quad.obj quad.obj
 exits 1
 run --check --diff quad.obj nothing.obj
 exits 2
+run --check --diff --report=/dev/full --report-format=json quad.obj quad.obj
+exits 2
+says "/dev/full"
 only quad.obj
 done_testing

@@ -76,6 +76,8 @@ def segment(marker, data):
 # progressive, of 4 000 x 4 000 and 490 scans
 scan = segment(0xda, bytes((1, 1, 0, 0, 0, 0))) + b'\x12\xff\x00'
 open('scans.jpg', 'wb').write(b'\xff\xd8' + segment(0xc2, struct.pack('>BHHB', 8, 4000, 4000, 1) + b'\1\x11\0') + 490 * scan)
+open('many.jpg', 'wb').write(b'\xff\xd8' + segment(0xc2, struct.pack('>BHHB', 8, 8, 8, 1) + b'\1\x11\0') +
+                               segment(0xdb, bytes(1) + bytes((1,)) * 64) + segment(0xc4, bytes((0, 1)) + bytes(16)) + 502 * scan)
 def tiff(path, width, height, tags, data, count):
     tables = struct.pack('<%dI' % count, *[8] * count) + struct.pack('<%dI' % count, *[len(data)] * count)
     at = 8 + len(data)
@@ -88,7 +90,7 @@ tiff('strips.tif', 16000, 16000, [(273, 20, 'offsets'), (278, 1, 800), (279, 20,
 # one column, of tiles of 4 096 x 16
 tile = zlib.compress(bytes(4096 * 16), 9)
 tiff('tiles.tif', 1, 1600, [(322, 1, 4096), (323, 1, 16), (324, 100, 'offsets'), (325, 100, 'sizes')], tile, 100)
-for name in 'scans.jpg', 'strips.tif', 'tiles.tif':
+for name in 'scans.jpg', 'many.jpg', 'strips.tif', 'tiles.tif':
     open(name + '.obj', 'w').write('mtllib %s.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl m\nf 1/1 2/2 3/3\n' % name)
     open(name + '.mtl', 'w').write('newmtl m\nmap_Kd %s\n' % name)
 END
@@ -110,6 +112,11 @@ exits 0
 run -q --textures=png --max-pixels=7840000000 scans.jpg.obj out.gltf
 exits 0
 says IMAGE_DAMAGED
+says_not "more than 500 scans"
+run -q --textures=png many.jpg.obj out.gltf
+says IMAGE_DAMAGED
+run --textures=png many.jpg.obj out.gltf
+says "JPEG: more than 500 scans"
 
 scene "500 maps of 4096 x 4096 are not too many, 60 times as many are"
 python3 "$ROOT/tests/support/cost_inputs.py" bumps 500 b.obj

@@ -14,6 +14,13 @@ printf 'v 0 0 0\nv 1 0 0\nf 1 2 3\n' >bad.obj
 run --method=area --manifest=m -d out mirrored_cube.obj plates.gltf bad.obj missing.obj
 exits 2
 validates --lines manifest m
+printf '{"asset": {"version": "2.0"}, x' >json.gltf
+printf '{"asset": {"version": "2.0"}, "buffers": [{"uri": "gone.bin", "byteLength": 4}]}' >gone.gltf
+run -q --manifest=w --weld -d out json.gltf gone.gltf plates.gltf
+validates --lines manifest w
+is "$(value w '[{k: e for k, e in m[f]["error"].items() if k != "message"} for f in ("json.gltf", "gone.gltf")]')" \
+	"[{'file': 'json.gltf', 'offset': 30}, {'file': 'gone.gltf', 'pointer': '/buffers/0'}]"
+is "$(value w '[m["plates.gltf"][k] for k in ("weld_before", "weld_after")]')" "[20, 20]" # none are equal
 is "$(value m 'sorted((k, v["status"], v["exit_code"]) for k, v in m.items())')" \
 	"[('bad.obj', 'failed', 3), ('mirrored_cube.obj', 'done', 0), ('missing.obj', 'failed', 2), ('plates.gltf', 'done', 0)]"
 is "$(value m 'm["bad.obj"]["error"]')" \
@@ -181,6 +188,17 @@ run --manifest=a.obj -d out a.obj
 exits 2
 says "a.obj: refusing to write: it is the same file as the input a.obj"
 same a.obj "$data/quad.obj"
+for content in text '{"inpu' '{"output": 1}'; do
+	printf %s "$content" >m
+	run --manifest=m -d none a.obj
+	exits 2
+	says "m: refusing to write: the file exists already and is no manifest"
+	is "$(cat m)" "$content"
+done
+is "$(ls none)" ""
+: >m
+run -q --manifest=m -d out a.obj
+exits 0
 run --manifest=/dev/full -d out a.obj
 exits 2
 says "/dev/full: cannot write the manifest: No space left on device"

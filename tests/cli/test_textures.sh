@@ -117,6 +117,18 @@ quad "map_Pr j.jpg" # which has all channels that are looked at
 run --textures=png quad.obj quad.glb
 is "$(gltf quad.glb 'g.images[0].mimeType')" image/png
 
+scene "one grey of a PNG may be clear"
+images write c.png 4 4 '(10 * x, 20 * y, 30)'
+for wide in 0 1; do
+	PYTHONPATH=$ROOT/tests/support python3 -c "import images, struct
+open('t.png', 'wb').write(images.png(4, 4, lambda x, y: ('16', 257 * 60 * x) if $wide else 60 * x,
+	images.chunk(b'tRNS', struct.pack('>H', (257 * 60 if $wide else 60)))))"
+	quad "map_Kd c.png" "map_d t.png"
+	run quad.obj quad.glb
+	images embedded quad.glb 0 made.png
+	is "$(images rows made.png '[p[3] // (257 if '$wide' else 1) for p in rows[1]]')" "[255, 0, 255, 255]"
+done
+
 scene "a damaged image is left out with a finding"
 images write n.tga 32 16 "$bumps"
 head -c 1000 n.tga >short.tga
@@ -169,6 +181,18 @@ is "$(gltf quad.gltf 'g.images[0].uri')" tex/n.png
 quad 'norm /art/of/somebody/n.png'
 run quad.obj quad.gltf
 is "$(gltf quad.gltf 'g.images[0].uri')" n.png
+
+scene "of a long path the last parts are looked for, and what no file can be called is nowhere"
+mkdir tex
+images write tex/n.png 4 4 "$bumps"
+quad "norm /$(printf 'a/%.0s' $(seq 40))tex/n.png"
+run quad.obj quad.gltf
+says "IMAGE_ELSEWHERE"
+is "$(gltf quad.gltf 'g.images[0].uri')" tex/n.png
+quad "norm $(printf 'a/%.0s' $(seq 3000))n.png"
+run quad.obj quad.gltf
+exits 0
+says "IMAGE_MISSING"
 
 scene "case counts last"
 mkdir Tex

@@ -36,12 +36,14 @@ SUBJECTS = {
     'gltf': ['layouts', 'extensions', 'damaged', 'verify', 'convert', 'draco', 'lossless', 'precision', 'meshopt', 'choose',
              'materials', 'normals', 'textures'],
     'json': ['damaged', 'layouts', 'extensions', 'lossless', 'convert'],
-    'scene': ['choose', 'colors', 'convert', 'normals', 'report', 'textures'],
-    'file': ['sets', 'output', 'placement', 'damaged', 'stale'], 'image': ['textures', 'materials'],
+    'scene': ['choose', 'colors', 'convert', 'normals', 'report', 'textures', 'origin', 'texts'],
+    'file': ['sets', 'output', 'placement', 'damaged', 'stale'],
+    'image': ['textures', 'materials', 'limits'],
     'obj': ['texts', 'materials', 'colors', 'convert', 'damaged', 'normals', 'origin'], 'ply': ['texts', 'convert', 'damaged', 'small_models'],
     'format': ['convert', 'verdict', 'textures'], 'report': ['report', 'check', 'verdict', 'diff', 'report_folder', 'page'],
     'pipeline': ['convert', 'quads', 'normals', 'morphs', 'choose', 'report', 'manifest', 'textures'],
-    'batch': ['batch', 'update', 'manifest', 'depfile', 'placement'], 'cli': ['usage', 'output', 'limits', 'choose'],
+    'batch': ['batch', 'update', 'manifest', 'depfile', 'placement'],
+    'cli': ['usage', 'output', 'limits', 'choose', 'manifest', 'batch', 'diff', 'convert', 'verdict'],
     'ext': ['draco', 'meshopt', 'modules', 'textures', 'verify'], 'base': ['limits', 'batch'],
 }
 LEFT_OUT = re.compile(r'test_cost|test_page|/tree/|/bindings/')

@@ -22,7 +22,7 @@ def chunk(kind, data):
     return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
 
 
-def png(width, height, pixel):
+def png(width, height, pixel, more=b""):
     first = pixel(0, 0)
     wide = isinstance(first, tuple) and first[0] == "16"
     kind = {1: 0, 3: 2, 4: 6}[1 if not isinstance(first, tuple) else len(first) - wide]
@@ -33,7 +33,7 @@ def png(width, height, pixel):
             p = pixel(x, y)
             raw += struct.pack(">%dH" % (len(p) - 1), *p[1:]) if wide else bytes(p if kind else [p])
     header = struct.pack(">IIBBBBB", width, height, 16 if wide else 8, kind, 0, 0, 0)
-    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(bytes(raw))) +
+    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + more + chunk(b"IDAT", zlib.compress(bytes(raw))) +
             chunk(b"IEND", b""))
 
 

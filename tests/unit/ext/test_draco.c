@@ -539,6 +539,41 @@ static size_t mutate(const unsigned char *bytes, size_t size, unsigned count, ui
 	return good;
 }
 
+/* Metadata of an attribute, which has a child, and of the mesh stand between the head and the connectivity. */
+TEST(metadata_is_read_over)
+{
+	static const unsigned char notes[] = {1, 7, 1, 1, 'a', 2, 'x', 'y', 1, 1, 'b', 0, 0, 1, 1, 'c', 1, 'z', 0};
+	enum { HEAD = 11, DEPTH = 120 };
+	grid g;
+	make_grid(&g, NT_DRACO_EDGEBREAKER, 0);
+	nt_draco_block plain = encoded(&g.mesh);
+	unsigned char *bytes = malloc(plain.size + 3 * DEPTH + 3 + sizeof notes);
+	memcpy(bytes, plain.bytes, HEAD);
+	bytes[HEAD - 1] |= 0x80;
+	nt_error error;
+	nt_draco *made;
+	memcpy(bytes + HEAD, notes, sizeof notes);
+	for (size_t cut = 0; cut <= sizeof notes; cut++)
+		assert_int_equal(nt_draco_decode(&made, bytes, HEAD + cut, 0, &error), NT_ERROR_INPUT);
+	memcpy(bytes + HEAD + sizeof notes, plain.bytes + HEAD, plain.size - HEAD);
+	assert_int_equal(nt_draco_decode(&made, bytes, plain.size + sizeof notes, 0, &error), NT_OK);
+	assert_int_equal(made->mesh.face_count, FACES - 1);
+	nt_draco_free(made);
+	/* children of children, each with a name of no letters */
+	size_t size = HEAD;
+	bytes[size++] = 0;
+	for (int i = 0; i < DEPTH; i++)
+		memcpy(bytes + size + 3 * i, "\0\1", 3);
+	size += 3 * DEPTH;
+	memcpy(bytes + size, "\0\0", 2);
+	memcpy(bytes + size + 2, plain.bytes + HEAD, plain.size - HEAD);
+	size += 2 + plain.size - HEAD;
+	assert_int_equal(nt_draco_decode(&made, bytes, size, 0, &error), NT_ERROR_INPUT);
+	assert_non_null(strstr(error.message, "its head is cut off"));
+	free(bytes);
+	nt_draco_block_free(&plain);
+}
+
 TEST(mutated_streams_do_no_harm)
 {
 	uint32_t seed = 2463534242u;

@@ -128,6 +128,62 @@ TEST(colours_are_turned_back)
 		assert_int_equal(bytes[2 * k] | bytes[2 * k + 1] << 8, expected[k] / 17 * 4369);
 }
 
+/* The largest component is 1, its number in the last two bits: of 0, 0, 0 and 0x7ffd it is the second. */
+TEST(filters_want_their_strides)
+{
+	(void)state;
+	const unsigned char turned[] = {
+		0xA1, 0xAA, 0xAA, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0xFD, 0x7F, 0, 0};
+	const unsigned char expected[8] = {[2] = 0xFF, [3] = 0x7F};
+	static const struct {
+		const char *filter;
+		size_t stride;
+	} refused[] = {{"QUATERNION", 4}, {"OCTAHEDRAL", 12}, {"COLOR", 12}, {"OTHER", 8}};
+	unsigned char bytes[12];
+	assert_int_equal(decode(turned, sizeof turned, 8, 1, "QUATERNION", bytes), NT_OK);
+	assert_memory_equal(bytes, expected, 8);
+	for (size_t i = 0; i < sizeof refused / sizeof *refused; i++) {
+		const size_t controls = refused[i].stride / 4;
+		unsigned char packed[1 + 3 + 24] = {0xA1};
+		memset(packed + 1, 0xAA, controls);
+		assert_int_equal(decode(packed, 25 + controls, refused[i].stride, 1, refused[i].filter, bytes),
+			NT_ERROR_UNSUPPORTED);
+	}
+}
+
+/* Triangles may begin with another corner. */
+TEST(lists_of_indices_come_back)
+{
+	(void)state;
+	static const uint32_t indices[] = {0, 1, 2, 2, 1, 3, 70, 3, 1, 500, 70, 3};
+	for (int k = 0; k < 4; k++) {
+		const bool triangles = k % 2, narrow = k / 2;
+		const nt_meshopt_view view = {triangles ? "TRIANGLES" : "INDICES", "NONE", narrow ? 2 : 4, 12, 0};
+		uint32_t wide[12];
+		uint16_t list[24];
+		unsigned char *packed;
+		nt_error error;
+		memcpy(list, indices, sizeof indices);
+		for (size_t i = 0; i < 12 && narrow; i++)
+			list[i] = (uint16_t)indices[i];
+		nt_meshopt_view back = view;
+		size_t size;
+		assert_int_equal(nt_meshopt_pack(&view, (unsigned char *)list, &packed, &size, &error), NT_OK);
+		back.packed_size = size;
+		memset(list, 0, sizeof list);
+		assert_int_equal(nt_meshopt_unpack(&back, packed, (unsigned char *)list, "", &error), NT_OK);
+		memcpy(wide, list, sizeof wide);
+		for (size_t i = 0; i < 12 && narrow; i++)
+			wide[i] = list[i];
+		for (size_t t = 0; t < 12; t += 3) {
+			const size_t turn = !triangles || wide[t] == indices[t] ? 0 : wide[t] == indices[t + 1] ? 1 : 2;
+			for (size_t i = 0; i < 3; i++)
+				assert_int_equal(wide[t + i], indices[t + (i + turn) % 3]);
+		}
+		free(packed);
+	}
+}
+
 /* ---- what others make of views ---- */
 
 /* The text lets filters differ by one in the last place of integers. */

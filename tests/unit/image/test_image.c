@@ -448,6 +448,28 @@ TEST(decode_refuses_sizes_before_it_asks_for_memory)
 	assert_string_equal(error.message, "TIFF: 110 bytes cannot hold 5 x 4099 pixels");
 }
 
+TEST(samples_that_are_floats_are_refused)
+{
+	const char *path = in_folder("float.tif");
+	TIFF *tiff = TIFFOpen(path, "w");
+	const float row[2] = {0.5f, 1};
+	TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, 2);
+	TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, 1);
+	TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, 32);
+	TIFFSetField(tiff, TIFFTAG_SAMPLEFORMAT, SAMPLEFORMAT_IEEEFP);
+	TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
+	assert_int_equal(TIFFWriteScanline(tiff, (void *)(uintptr_t)row, 0, 0), 1);
+	TIFFClose(tiff);
+	bytes b;
+	nt_pixels p;
+	nt_error error;
+	FILE *file = fopen(path, "rb");
+	b.size = fread(b.data, 1, ROOM, file);
+	fclose(file);
+	assert_int_equal(nt_image_decode(b.data, b.size, &p, &error), NT_ERROR_UNSUPPORTED);
+	assert_string_equal(error.message, "TIFF: samples that are no unsigned integers");
+}
+
 /* As --help says it: 256 pixels for each byte, and 2^34 of small files; of one image 64 times as many for each byte. */
 TEST(pixels_are_held_against_bytes)
 {
