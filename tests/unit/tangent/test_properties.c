@@ -520,6 +520,13 @@ static void report(const soup *s, const char *mesh_name, const property *p, nmta
 
 static size_t broken;
 
+/* Properties are looked at without sanitizers; these see on which memory they are computed. */
+#ifdef __SANITIZE_ADDRESS__
+enum { STEP = 5 };
+#else
+enum { STEP = 1 };
+#endif
+
 static void try_mesh(const soup *s, const char *name, bool regular)
 {
 	forget();
@@ -553,7 +560,7 @@ TEST(properties_hold_on_surfaces)
 TEST(properties_hold_on_random_soups)
 {
 	broken = 0;
-	for (uint64_t seed = 0; seed < 40; seed++) {
+	for (uint64_t seed = 0; seed < 40; seed += STEP) {
 		char name[32];
 		snprintf(name, sizeof name, "soup %d", (int)seed);
 		soup s = soup_random(seed);
@@ -565,7 +572,9 @@ TEST(properties_hold_on_random_soups)
 
 static void try_golden(const char *path, const nt_golden *golden, void *context)
 {
-	(void)context;
+	size_t *number = context;
+	if ((*number)++ % STEP != 0)
+		return;
 	const nmtan_mesh mesh = nt_golden_mesh(golden);
 	soup s = soup_from_mesh(&mesh, MOST_FACES);
 	try_mesh(&s, path, false);
@@ -574,8 +583,9 @@ static void try_golden(const char *path, const nt_golden *golden, void *context)
 
 TEST(properties_hold_on_golden_meshes)
 {
+	size_t number = 0;
 	broken = 0;
-	nt_golden_each(NT_DATA_DIR "/golden", try_golden, NULL);
+	nt_golden_each(NT_DATA_DIR "/golden", try_golden, &number);
 	assert_int_equal(broken, 0);
 }
 

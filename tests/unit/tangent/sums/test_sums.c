@@ -22,9 +22,9 @@ static void solve(const nmtan_mesh *mesh, nmtan_options options, nt_implementati
 
 /* Bytes are compared without sanitizers; these see on which memory the passes work. */
 #ifdef __SANITIZE_ADDRESS__
-enum { FEWEST_THREADS = 3 };
+enum { FEWEST_THREADS = 3, ALL_MESHES = 0 };
 #else
-enum { FEWEST_THREADS = 1 };
+enum { FEWEST_THREADS = 1, ALL_MESHES = 1 };
 #endif
 
 static void compare_paths(const nmtan_mesh *mesh, size_t corners)
@@ -72,7 +72,8 @@ TEST(all_paths_give_the_same_bytes_on_a_large_mesh)
 {
 	static const float odd[4] = {1e-44f, 1e30f, -1e-30f, INFINITY};
 	nt_owned grid = nt_surface_grid(NT_TORUS, 210, 200, 0.3, 3);
-	compare_paths(&grid.mesh, grid.corner_count);
+	if (ALL_MESHES)
+		compare_paths(&grid.mesh, grid.corner_count);
 	for (size_t v = 0; v < grid.mesh.vertex_count; v++) {
 		if (v % 5 == 0)
 			grid.texcoords[v][0] = 1 - grid.texcoords[v][0];
@@ -81,7 +82,8 @@ TEST(all_paths_give_the_same_bytes_on_a_large_mesh)
 		if (v % 11 == 0)
 			grid.texcoords[v][v % 2] = odd[v % 4];
 	}
-	compare_paths(&grid.mesh, grid.corner_count);
+	if (ALL_MESHES)
+		compare_paths(&grid.mesh, grid.corner_count);
 	grid.mesh.stored = &(nmtan_stored_uv){.struct_bytes = sizeof(nmtan_stored_uv), .v_offset = 1};
 	compare_paths(&grid.mesh, grid.corner_count);
 	nt_owned_free(&grid);
@@ -119,7 +121,8 @@ TEST(all_paths_give_the_same_bytes_on_quads)
 	grid.mesh.face_sizes = sizes;
 	grid.mesh.indices = indices;
 	grid.mesh.face_count = faces;
-	compare_paths(&grid.mesh, corners);
+	if (ALL_MESHES)
+		compare_paths(&grid.mesh, corners);
 	grid.mesh.stored = &(nmtan_stored_uv){.struct_bytes = sizeof(nmtan_stored_uv), .v_offset = -1};
 	compare_paths(&grid.mesh, corners);
 	nt_owned_free(&grid);
