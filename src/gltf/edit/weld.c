@@ -128,11 +128,12 @@ static nt_status list_columns(welding *w, const nt_stored_tangents *stored)
 	for (size_t i = 0; !status && !w->obstacle && i < pool->user_count; i++) {
 		const nt_mesh *solved = nt_pool_is_solved(pool, i) ? nt_pool_mesh(pool, i) : NULL;
 		const nt_json_value *primitive = nt_pool_primitive(pool, i);
+		const bool drops = nt_pool_mesh(pool, i)->decision == NT_SKIP_DROPPED; /* TANGENT, of targets too */
 		w->morph = 0;
 		for (nt_gltf_use u = {0}; !status && nt_gltf_next_use(w->edits->document, primitive, &u);) {
 			if (nt_gltf_users_of(w->edits->document, u.accessor)->idle)
 				w->obstacle = "an accessor that no primitive uses has its bytes";
-			if (!is_replaced(w, solved, &u))
+			if (!(drops && strcmp(u.name, "TANGENT") == 0) && !is_replaced(w, solved, &u))
 				status = add_attribute(w, u.accessor);
 		}
 	}
