@@ -24,6 +24,7 @@ typedef struct vertex {
 	uint32_t least, most; /* what its representative is between; equal: it is this one */
 	uint32_t number;      /* in the cells; until then, how many corners it has */
 	uint32_t cell;        /* its name; 0: no corners */
+	uint32_t first;       /* corner in the order of triangles: the least, but for one in two halves of a quad */
 } vertex;
 
 /* The array that is sorted. */
@@ -58,7 +59,7 @@ static void count_corners(const nt_welded_mesh *m, vertex *vertices)
 			const uint32_t corner = (uint32_t)nt_triangle_corner(m->triangles, t, k);
 			one->least = nt_least_of(one->least, corner);
 			one->most = nt_most_of(one->most, corner);
-			one->number++;
+			one->first = one->number++ ? one->first : corner;
 		}
 	}
 }
@@ -99,7 +100,8 @@ static void make_cells(edge_array *e)
 	e->used_count = next.vertices;
 	for (size_t v = 0; v < m->vertex_count; v++) {
 		vertex *one = &e->vertices[v];
-		one->most = counts[one->cell].vertices > 1 ? one->most : one->least;
+		if (counts[one->cell].vertices == 1)
+			one->least = one->most = one->first;
 		sum += one->most - one->least;
 	}
 	/* about so many vertices are open at each pivot */
@@ -182,19 +184,23 @@ static bool find_all(edge_array *e)
 {
 	nt_cells *c = &e->cells;
 	vertex *const vertices = e->vertices;
-	bool done = true;
+	bool done = true, is_halved = c->corners;
 	if (!place(e))
 		return false;
 	for (nt_part *cell = e->parts + 1; cell <= e->parts + e->cell_count; cell++) {
-		if (cell->vertex_count == 1) /* many have one */
+		/* many have one vertex; a part of a cell that has been halved has others than these numbers */
+		if (cell->vertex_count == 1 || is_halved)
 			continue;
 		for (uint32_t i = cell->vertices, end = i + cell->vertex_count; i < end && done; i++)
 			done = nt_cells_find(c, cell, i);
 	}
-	c->limit = false;
 	for (size_t v = 0; v < e->mesh->vertex_count && done; v++)
-		if (vertices[v].least < vertices[v].most)
-			vertices[v].least = vertices[v].most = nt_cells_found(c, vertices[v].number);
+		if (vertices[v].least < vertices[v].most) {
+			done = !is_halved || nt_cells_find(c, &e->parts[vertices[v].cell], vertices[v].number);
+			if (done)
+				vertices[v].least = vertices[v].most = nt_cells_found(c, vertices[v].number);
+		}
+	c->limit = false;
 	e->keys = done ? (uint32_t *)(void *)c->corners : NULL;
 	return true;
 }
