@@ -87,18 +87,12 @@ static inline uint32_t nt_adjacency_next(const nt_adjacency *a, uint32_t *cursor
 	return full ? NT_CURSOR_HUB : place;
 }
 
-/* That of a cursor, whatever its flags. */
-static inline nt_fan_entry *nt_adjacency_entry(const nt_adjacency *a, uint32_t cursor)
-{
-	return &a->entries[cursor & NT_CURSOR_PLACE];
-}
-
 static inline void nt_adjacency_store(const nt_adjacency *a, uint32_t place, nt_fan_entry entry)
 {
 	if (nt_adjacency_is_narrow(a))
 		a->narrow[place] = nt_fan_narrow(entry);
 	else
-		*nt_adjacency_entry(a, place) = entry;
+		a->entries[place & NT_CURSOR_PLACE] = entry;
 }
 
 /* The place of a vertex's first entry, of one range; how many corners it has. */

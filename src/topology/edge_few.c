@@ -1,15 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The question of edge_tail.c for few triangles, nearly all of which are answered with no: scenes have thousands of
- * small meshes, so nothing is allocated, and no pass goes over all triangles unless an old vertex shares its cell. The
- * question takes 230 ns of a call for 32 triangles (1 340 ns; Zen 4, AVX-512). If it stays open, edge_sort.c finds the
- * order: a call for 120 triangles in no order takes 11 us, and took 101 when edge_tail.c was asked as well.
+ * The question of edge_tail.c, asked of the last triangles alone: it is nearly always answered with no. No pass goes
+ * over all triangles, unless they are few and an old vertex shares its cell.
  *
- * The representative of a vertex is between its first and its last corner. The last run has one edge of each triangle
- * with X, the vertex of the largest lower end, and a vertex above. Its order can only matter if X is in two triangles
- * with one above, and in a third one with one above: the same, or another that no triangle has with the first, because
- * none has two above X. The corners around these vertices are in the adjacency, which the sums have made. This file
- * looks for three such vertices of the last triangles, and finds representatives as long as they decide it.
+ * The last run has one edge of each triangle with X, the vertex of the largest lower end, and a vertex above. Its order
+ * can only matter if X is in two triangles with one above, and in a third one with one above: the same, or another that
+ * no triangle has with the first, because none has two above X. The corners around these vertices are in the adjacency,
+ * which the sums have made. This file looks for three such vertices of the last triangles, and finds representatives,
+ * which are between first and last corners, as long as they decide it.
  */
 #include "topology/inside.h"
 
@@ -25,8 +23,11 @@ enum {
 	FIRST = 4, /* triangles at the end that are looked at first, and at most */
 	MOST = 10,
 	MOST_SLOTS = 3 * MOST,
-	MOST_IN_CELL = 63, /* vertices */
+	PLACES = 2048,     /* of vertices, by their lowest bits */
+	MOST_IN_CELL = 511, /* vertices; and of a part that is halved */
+	MOST_IN_PART = 63,
 	MOST_FINDS = 3,    /* cells of which all corners are listed */
+	MOST_PASSES = 1,   /* over the rows of many vertices */
 	BLOCK = 32,        /* rows that are cleared, or compared, at a time */
 	LANES = 4
 };
@@ -36,8 +37,8 @@ enum {
 typedef struct few {
 	const nt_welded_mesh *mesh;
 	const uint32_t *ids;
-	nt_grid *grid;
-	bool is_grid_of_used;
+	nt_grid grid;
+	bool is_grid_of_used, are_many;
 	uint32_t count, first;       /* triangles; the first of the last ones */
 	uint32_t least;              /* what the largest lower end is at least */
 	uint32_t slot_count, finds;
@@ -47,34 +48,45 @@ typedef struct few {
 	uint32_t seen[MOST_SLOTS + 1]; /* corners in the last triangles */
 	uint32_t most[MOST_SLOTS + 1]; /* what the largest lower end is at least if this one is above it */
 	uint32_t beside[MOST_SLOTS + 1][NT_LEAST_EDGES]; /* neighbours in so many triangles, or more */
-	uint32_t bits[MOST_ROWS];    /* of vertices: 1: in no last triangle */
+	uint32_t bits[PLACES];       /* of vertices, of which many have one place: 1: in no last triangle */
 } few;
 
+/* The slot of a vertex of the last triangles. */
+static uint32_t last_slot(const few *f, uint32_t vertex)
+{
+	return (uint32_t)nt_trailing_zeros(f->bits[vertex % PLACES]);
+}
+
+/* That of any vertex. */
 static uint32_t slot_of(const few *f, uint32_t vertex)
 {
-	return (uint32_t)nt_trailing_zeros(f->bits[vertex]);
+	const uint32_t slot = last_slot(f, vertex);
+	return f->vertices[slot] == vertex ? slot : 0;
 }
 
 /* Gives slots to the vertices of the last triangles, and finds their last corners, and the first ones of those that are
  * in no other triangle. */
-static void take_last(few *f, uint32_t triangles)
+static bool NT_NOINLINE take_last(few *f, uint32_t triangles)
 {
 	f->first = f->count > triangles ? f->count - triangles : 0;
-	for (size_t v = 0; v < f->mesh->vertex_count; v += BLOCK)
+	for (size_t v = 0; v < f->mesh->vertex_count && v < PLACES; v += BLOCK)
 		for (size_t i = v; i < v + BLOCK; i++)
 			f->bits[i] = 1;
 	uint32_t count = 0;
 	const uint32_t *v = f->ids + 3 * f->first;
 	for (uint32_t c = 4 * f->first; c < 4 * f->count; c += 4, v += 3)
 		for (uint32_t k = 0; k < 3; k++) {
-			if (f->bits[v[k]] == 1) {
+			uint32_t *bit = &f->bits[v[k] % PLACES];
+			if (*bit == 1) {
 				count++;
-				f->bits[v[k]] = (uint32_t)1 << count;
+				*bit = (uint32_t)1 << count;
 				f->vertices[count] = v[k];
 				f->low[count] = c + k;
 				f->seen[count] = 0;
 			}
-			const uint32_t slot = slot_of(f, v[k]);
+			const uint32_t slot = (uint32_t)nt_trailing_zeros(*bit);
+			if (f->are_many && f->vertices[slot] != v[k])
+				return false;
 			f->high[slot] = c + k;
 			f->seen[slot]++;
 		}
@@ -86,11 +98,7 @@ static void take_last(few *f, uint32_t triangles)
 		const uint32_t end = nt_adjacency_first(a, f->vertices[i]) + f->seen[i] * a->step;
 		f->low[i] = cursor == end || cursor == (NT_CURSOR_HUB | f->seen[i]) ? f->low[i] : 0;
 	}
-}
-
-static uint32_t middle_of(uint32_t a, uint32_t b, uint32_t c)
-{
-	return nt_most_of(nt_least_of(a, b), nt_least_of(nt_most_of(a, b), c));
+	return true;
 }
 
 /* False: older triangles may have it. */
@@ -100,8 +108,9 @@ static bool find_least(few *f)
 	/* the middle corner of a triangle is not above its second one */
 	for (uint32_t t = f->count; t-- > f->first && 4 * t + 1 > least;) {
 		const uint32_t *v = f->ids + 3 * t;
-		const uint32_t middle =
-			middle_of(f->low[slot_of(f, v[0])], f->low[slot_of(f, v[1])], f->low[slot_of(f, v[2])]);
+		const uint32_t a = f->low[last_slot(f, v[0])], b = f->low[last_slot(f, v[1])];
+		const uint32_t c = f->low[last_slot(f, v[2])];
+		const uint32_t middle = nt_most_of(nt_least_of(a, b), nt_least_of(nt_most_of(a, b), c));
 		if (middle > least && !nt_welded_is_degenerate(f->mesh, t, v))
 			least = middle;
 	}
@@ -110,10 +119,11 @@ static bool find_least(few *f)
 }
 
 /* Finds the neighbours of those that may be the largest lower end, or above; none of a hub. */
-static void find_beside(few *f)
+static void NT_NOINLINE find_beside(few *f)
 {
 	const nt_adjacency *const a = f->mesh->adjacency;
 	const uint32_t *const bits = f->bits;
+	const bool are_many = f->are_many;
 	uint32_t high = 0, above = 0; /* certainly */
 	for (uint32_t i = 1; i <= f->slot_count; i++) {
 		high |= (uint32_t)(f->high[i] >= f->least) << i;
@@ -128,7 +138,10 @@ static void find_beside(few *f)
 			nt_fan_entry entry;
 			if (!nt_adjacency_load(a, at, &entry))
 				continue;
-			const uint32_t others = bits[entry.next] | bits[entry.previous];
+			uint32_t others = bits[entry.next % PLACES] | bits[entry.previous % PLACES];
+			if (are_many && others != 1)
+				others = (uint32_t)1 << slot_of(f, entry.next) |
+					(uint32_t)1 << slot_of(f, entry.previous);
 			often |= twice & others;
 			twice |= once & others;
 			once |= others;
@@ -142,25 +155,16 @@ static void find_beside(few *f)
 	}
 }
 
-/* Representatives, as far as they are needed */
-
 /* A cell, as representatives.h halves it. Its vertices have numbers from 1 on. */
 typedef struct few_cell {
 	uint32_t count, wanted;               /* vertices; the one that is asked for */
-	uint16_t names[MOST_IN_CELL + 1];     /* of vertices */
+	uint32_t names[MOST_IN_CELL + 1];     /* of vertices */
 	nt_cell_vertex vertices[MOST_IN_CELL + 1];
 	nt_cell_corner corners[MOST_ROWS + 1];
 	uint32_t order[MOST_IN_CELL], swaps[MOST_ROWS];
 	uint8_t below[MOST_IN_CELL + 1];
-	nt_part parts[2 * MOST_IN_CELL];
+	nt_part parts[2 * MOST_IN_PART];
 } few_cell;
-
-/* Vertices farther apart are in two cells, whatever is rounded. If a box is so thin that this is 0, each float has a
- * cell of its own. */
-static float reach_of(const nt_grid *grid)
-{
-	return (grid->high - grid->low) * (2.0f / (float)NT_CELLS);
-}
 
 /* Compares LANES rows, or the rest, with a coordinate: a bit for each that is near. */
 static inline NT_ALWAYS_INLINE uint32_t near_rows(const float *x, size_t step, size_t left, float at, float reach)
@@ -197,22 +201,18 @@ static bool are_used(const nt_adjacency *a, size_t vertices)
 	return used;
 }
 
-/* Makes the grid that of the vertices that have corners. */
-static void leave_unused(few *f)
-{
-	if (!are_used(f->mesh->adjacency, f->mesh->vertex_count))
-		(void)nt_grid_of_used(f->mesh, f->grid);
-	f->is_grid_of_used = true;
-}
-
 /* Lists the vertices of a vertex's cell. False: they are too many. */
 static bool list_vertices(few *f, uint32_t vertex, few_cell *cell)
 {
-	if (!f->is_grid_of_used)
-		leave_unused(f);
-	const nt_grid grid = *f->grid;
+	if (!f->is_grid_of_used && !are_used(f->mesh->adjacency, f->mesh->vertex_count))
+		(void)nt_grid_of_used(f->mesh, &f->grid);
+	f->is_grid_of_used = true;
+	const nt_grid grid = f->grid;
 	const size_t step = f->mesh->step, rows = f->mesh->vertex_count;
-	const float *x = f->mesh->positions + grid.axis, at = x[step * vertex], reach = reach_of(&grid);
+	const float *x = f->mesh->positions + grid.axis, at = x[step * vertex];
+	/* vertices farther apart are in two cells, whatever is rounded; if a box is so thin that this is 0, each float
+	 * has a cell of its own */
+	const float reach = (grid.high - grid.low) * (2.0f / (float)NT_CELLS);
 	uint32_t count = 0;
 	for (size_t row = 0; row < rows; row += LANES, x += LANES * step)
 		for (uint32_t left = near_rows(x, step, rows - row, at, reach); left; left &= left - 1) {
@@ -228,7 +228,7 @@ static bool list_vertices(few *f, uint32_t vertex, few_cell *cell)
 			/* a float more than a position, which is a vector then */
 			memcpy(&cell->vertices[count], nt_welded_position(f->mesh, v), 4 * sizeof(float));
 			cell->vertices[count].corners = corners;
-			cell->names[count] = (uint16_t)v;
+			cell->names[count] = v;
 			if (v == vertex)
 				cell->wanted = count;
 		}
@@ -237,7 +237,7 @@ static bool list_vertices(few *f, uint32_t vertex, few_cell *cell)
 }
 
 /* Lists the corners of a cell's vertices. */
-static void list_corners(const few *f, few_cell *cell)
+static bool list_corners(const few *f, few_cell *cell)
 {
 	uint8_t owners[MOST_ROWS]; /* a vertex of the cell, or 0 */
 	nt_cell_corner *corner = cell->corners;
@@ -255,6 +255,7 @@ static void list_corners(const few *f, few_cell *cell)
 			corner += of[k] != 0;
 		}
 	}
+	return true;
 }
 
 /* Lists the corners of a part of a cell, in which the vertex that is asked for, whose corners are all in the last
@@ -293,72 +294,65 @@ static bool list_last_corners(const few *f, few_cell *cell, const nt_cells *cell
 		older = one;
 	}
 	numbers[0] = 0;
+	if (part->vertex_count > MOST_IN_PART || part->corner_count > MOST_ROWS)
+		return false;
 	for (; count + last < part->corner_count; count++)
 		cell->corners[count] = (nt_cell_corner){older, 0};
-	const uint32_t *v = f->ids + 3 * f->first;
-	for (uint32_t c = 4 * f->first; c < 4 * f->count; c += 4, v += 3)
-		for (uint32_t k = 0; k < 3; k++) {
-			const uint32_t number = numbers[slot_of(f, v[k])];
-			cell->corners[count] = (nt_cell_corner){number, c + k};
-			count += number != 0;
-		}
+	for (uint32_t i = 3 * f->first; i < 3 * f->count; i++) {
+		const uint32_t number = numbers[last_slot(f, f->ids[i])];
+		cell->corners[count] = (nt_cell_corner){number, i / 3 * 4 + i % 3};
+		count += number != 0;
+	}
 	return true;
 }
 
 /* Finds the representative of a vertex, from the last triangles' corners alone or from all. False: the cell has too
  * many vertices, or has to be halved too often, or the last triangles do not say. */
-static bool find(few *f, uint32_t slot, bool of_last)
+static bool NT_NOINLINE find(few *f, uint32_t slot, bool of_last)
 {
 	few_cell cell;
+	/* many rows are not gone over more than once, nor for an old vertex, which they are unlikely to decide */
+	if (f->are_many && (f->low[slot] < 4 * f->first || f->finds++ == MOST_PASSES))
+		return false;
 	if (!list_vertices(f, f->vertices[slot], &cell))
 		return false;
 	nt_part all = {.vertex_count = cell.count};
 	nt_cells cells = {.vertices = cell.vertices, .corners = cell.corners, .order = cell.order,
-		.below = cell.below, .swaps = cell.swaps, .parts = cell.parts, .part_count = 2 * MOST_IN_CELL};
+		.below = cell.below, .swaps = cell.swaps, .parts = cell.parts, .part_count = 2 * MOST_IN_PART};
 	for (uint32_t i = 1; i <= cell.count; i++)
 		all.corner_count += cell.vertices[i].corners;
 	if (cell.count == 1) {
 		f->high[slot] = f->low[slot]; /* its first corner */
 		return true;
 	}
-	if (!of_last)
-		list_corners(f, &cell);
-	else if (f->seen[slot] != cell.vertices[cell.wanted].corners || !list_last_corners(f, &cell, &cells, &all))
-		return false;
-	if (!nt_cells_find(&cells, &all, cell.wanted))
+	const bool listed = !of_last ? cell.count <= MOST_IN_PART && list_corners(f, &cell)
+		: f->low[slot] >= 4 * f->first && list_last_corners(f, &cell, &cells, &all);
+	if (!listed || !nt_cells_find(&cells, &all, cell.wanted))
 		return false;
 	f->low[slot] = f->high[slot] = nt_cells_found(&cells, cell.wanted);
 	return true;
 }
 
-/* The answer */
-
-/* Whether a vertex has a corner [from, to) that may stand for it. */
-static bool has_corner(const few *f, uint32_t slot, uint32_t from, uint32_t to)
-{
-	uint32_t c = nt_most_of(from, f->low[slot]);
-	if (c > f->high[slot] || c >= to)
-		return false;
-	if (f->high[slot] < to)
-		return true;
-	while (c < to && (c % 4 == 3 || f->ids[3 * (c / 4) + c % 4] != f->vertices[slot]))
-		c++;
-	return c < to;
-}
-
 /* Whether a vertex may be the largest lower end, and two others above: one is in two triangles with it, and the other
  * in a third one. */
-static inline bool may_be(const few *f, uint32_t middle, uint32_t end, uint32_t other)
+static bool may_be(const few *f, uint32_t middle, uint32_t end, uint32_t other)
 {
-	return has_corner(f, middle, nt_most_of(f->most[end], f->most[other]),
-		nt_least_of(f->high[end], f->high[other]));
+	const uint32_t to = nt_least_of(f->high[end], f->high[other]);
+	uint32_t c = nt_most_of(nt_most_of(f->most[end], f->most[other]), f->low[middle]);
+	if (c > f->high[middle] || c >= to)
+		return false;
+	if (f->high[middle] < to)
+		return true;
+	while (c < to && (c % 4 == 3 || f->ids[3 * (c / 4) + c % 4] != f->vertices[middle]))
+		c++;
+	return c < to;
 }
 
 /* The same once representatives that decide it are known. */
 static bool NT_NOINLINE are(few *f, uint32_t middle, uint32_t end, uint32_t other)
 {
 	const uint32_t three[3] = {middle, end, other};
-	for (int of_last = 1; of_last >= 0; of_last--)
+	for (int of_last = 1; of_last >= f->are_many; of_last--)
 		for (int i = 0; i < 3; i++) {
 			if (f->low[three[i]] == f->high[three[i]])
 				continue;
@@ -376,9 +370,7 @@ static bool may_matter(few *f)
 	for (uint32_t left = f->high_ones; left; left &= left - 1) {
 		const uint32_t i = (uint32_t)nt_trailing_zeros(left);
 		if (f->mesh->adjacency->cursors[f->vertices[i]] & NT_CURSOR_HUB) {
-			if (f->low[i] != f->high[i] && !find(f, i, false))
-				return true;
-			if (f->high[i] >= f->least)
+			if ((f->low[i] != f->high[i] && !find(f, i, false)) || f->high[i] >= f->least)
 				return true;
 			continue;
 		}
@@ -398,29 +390,19 @@ static bool may_matter(few *f)
 	return false;
 }
 
-bool nt_few_edges_are_sorted(const nt_welded_mesh *mesh, nt_grid *grid, bool *limit)
+bool nt_edges_are_sorted(const nt_welded_mesh *mesh, nt_grid grid, bool is_grid_of_used)
 {
 	few f;
-	*limit = !nt_grid_make(mesh, NULL, grid) && !nt_grid_of_used(mesh, grid);
-	if (*limit || mesh->triangle_count < NT_LEAST_EDGES)
-		return true;
 	f.mesh = mesh;
 	f.ids = mesh->triangles->ids;
 	f.grid = grid;
-	f.is_grid_of_used = false;
+	f.is_grid_of_used = is_grid_of_used;
 	f.count = (uint32_t)mesh->triangle_count;
+	f.are_many = mesh->vertex_count > PLACES || mesh->triangle_count > NT_EDGE_FEW;
 	f.finds = 0;
-	take_last(&f, FIRST);
-	bool found = find_least(&f);
-	if (!found) {
-		take_last(&f, MOST);
-		found = find_least(&f);
-	}
-	if (found)
-		find_beside(&f);
-	if (found && !may_matter(&f))
-		return true;
-	if (!f.is_grid_of_used)
-		leave_unused(&f);
-	return false;
+	for (uint32_t triangles = FIRST; !take_last(&f, triangles) || !find_least(&f); triangles = MOST)
+		if (triangles == MOST)
+			return false;
+	find_beside(&f);
+	return !may_matter(&f);
 }

@@ -557,11 +557,20 @@ nmtan_status nt_find_unsorted(const nt_welded_mesh *mesh, const nt_edge_tail *ta
 	nt_grid grid;
 	nt_edge_answer answer = NT_EDGE_OPEN;
 	nmtan_status status = NMTAN_OK;
-	const bool few = nt_edge_are_few(mesh);
-	if (few && nt_few_edges_are_sorted(mesh, &grid, &unsorted->limit))
+	const bool few = nt_edge_are_few(mesh), is_known = !few && tail && tail->notes && tail->is_grid_of_used;
+	if (few)
+		unsorted->limit = !nt_grid_make(mesh, NULL, &grid) && !nt_grid_of_used(mesh, &grid);
+	else if (is_known)
+		grid = tail->grid;
+	if (unsorted->limit || (few && mesh->triangle_count < NT_LEAST_EDGES))
+		return NMTAN_OK;
+	if ((few || (is_known && mesh->adjacency && !mesh->triangles->cuts)) &&
+		nt_edges_are_sorted(mesh, grid, is_known))
 		return NMTAN_OK;
 	const nt_scratch_mark mark = nt_scratch_here(mesh->scratch);
-	if (!few)
+	if (few)
+		(void)nt_grid_of_used(mesh, &grid);
+	else
 		status = nt_edge_tail_matters(mesh, tail, &grid, &answer, &unsorted->limit);
 	nt_scratch_back(mesh->scratch, mark);
 	if (status || unsorted->limit || answer == NT_EDGE_NO)

@@ -140,9 +140,8 @@ typedef enum nt_edge_answer { NT_EDGE_NO, NT_EDGE_MAY, NT_EDGE_OPEN } nt_edge_an
 nmtan_status nt_edge_tail_matters(const nt_welded_mesh *mesh, const nt_edge_tail *tail, nt_grid *grid,
 	nt_edge_answer *answer, bool *limit);
 
-/* Whether the order of the last run certainly does not matter, or is beyond a limit; for at most NT_EDGE_FEW triangles
- * that are not halves of quads, and no more rows than corners may be. `grid` receives that of the vertices that have
- * corners. */
-bool nt_few_edges_are_sorted(const nt_welded_mesh *mesh, nt_grid *grid, bool *limit);
+/* Whether the order of the last run certainly does not matter, as far as the last triangles say, or few triangles; they
+ * are not halves of quads. The grid is that of all rows, or of those that have corners. */
+bool nt_edges_are_sorted(const nt_welded_mesh *mesh, nt_grid grid, bool is_grid_of_used);
 
 #endif

@@ -26,7 +26,7 @@ static void fill(const nt_adjacency *a, unsigned range, size_t begin, size_t end
 		uint32_t *cursor = &a->cursors[range * a->vertex_count + ids[i]];
 		if (*cursor & NT_CURSOR_HUB)
 			continue;
-		*nt_adjacency_entry(a, *cursor) = (nt_fan_entry){(uint32_t)i, ids[i]};
+		nt_adjacency_store(a, *cursor, (nt_fan_entry){(uint32_t)i, ids[i]});
 		*cursor += NT_FAN_LANES;
 	}
 }
