@@ -535,8 +535,7 @@ static inline const nt_gltf_users *nt_gltf_users_of(const nt_gltf *document, uin
 /* ---- what a document says of the buffers that were written beside it: sidecar.c ---- */
 
 /*
- * Their names, and in "extras" the digest by
- * which a later run knows them for ours (file/output.h).
+ * Their names, and in "extras" the digest by which a later run knows them for ours (file/output.h).
  *
  *   "extras": {"nmtan:xxh128": DIGEST}                             we wrote these bytes, for this document
  *   "extras": {"nmtan:xxh128": DIGEST, "nmtan:replaces": DIGEST}   under a staging name, to replace that

@@ -26,8 +26,8 @@
 
 /* ---- the table of findings: codes.c ---- */
 
-/* It has one row for each nt_code. It is what --list-codes prints, what man/nmtan-report.5 and data/nmtan-
- * report.schema.json are checked against, and where every writer of reports takes its sentences from. */
+/* It has one row for each nt_code. It is what --list-codes prints, what man/nmtan-report.5 and
+ * data/nmtan-report.schema.json are checked against, and where every writer of reports takes its sentences from. */
 
 /* Actions for a finding. The greatest comes first: what has to be exported again, all else is made
  * from. */
