@@ -17,7 +17,7 @@
  * nmtan_vertex_tangents() does. */
 nmtan_status nt_repair_and_split(const nt_solve *solve, nmtan_counts *counts, nt_splitter *splitter);
 
-/* ---- the output of a split: vertices.c ---- */
+/* ---- the output of a split: split.c ---- */
 
 /* Between the caller's arrays and those of the splitter, which knows plain meshes and rows of tangents that are tightly
  * packed. */
