@@ -234,19 +234,9 @@ nt_status nt_check_measures(nt_check *check); /* measures.c: density, stretch, c
 /* Once all meshes are checked: seams between them. across.c */
 nt_status nt_check_across(nt_check *check);
 
-/* ---- identity of meshes and findings whose names have changed: digest.c ---- */
-
-/* The digest of a mesh's triangles in space, whatever their order and numbers. Never 0. Returns NT_OK or
- * NT_ERROR_MEMORY. */
+/* findings.c. The digest by which a mesh is known if its name changes: of its triangles in space, whatever their order
+ * and numbers. Never 0. Returns NT_OK or NT_ERROR_MEMORY. */
 nt_status nt_digest_surface(const nt_surface *surface, nt_scratch *scratch, uint64_t *digest);
-
-/* The digest of a finding, before its mesh is known as a whole: its code and its places, or, without places, its
- * detail. */
-uint64_t nt_digest_finding(const nt_report_finding *finding, const char *detail);
-
-/* Completes the digests of findings without places, which are about a mesh or the file: 0 where that has no
- * triangles. */
-void nt_digest_complete(nt_report *report);
 
 /* Ends: most severe first, limits, baseline. findings.c */
 nt_status nt_report_complete(nt_report *report, const nt_report_options *options);

@@ -188,7 +188,7 @@ typedef struct nt_report_finding {
 	const char *file;     /* of the place, as reports show it, if that is not the input; NULL */
 	nt_box box;           /* around all occurrences */
 	uint64_t fingerprint;
-	uint64_t geometry;    /* the same without names: digest.c; 0: not known */
+	uint64_t geometry;    /* the same without names; 0: not known */
 	bool known;           /* the baseline has it */
 	uint32_t noted;       /* index into the scene's findings, NT_NONE: a check found it */
 	uint32_t seam;        /* index into the mesh's seams, those of hard edges too; NT_NONE */
