@@ -40,6 +40,8 @@ leaf.png 8 8 (9, 8, 7, 255 * (x > y))
 solid.png 4 4 (60 * x, 60 * x, 60 * x, 255)
 last.png 4 4 (99, 99, 99, 0 if x == y == 3 else 255)
 rim.png 8 8 128 if y == 0 and x < 3 else 15 if x < 4 else 240
+column.png 1 4 0
+two.png 1 2 200 * y
 rims.png 8 8 128 if y == 0 and x < 4 else 15 if x < 4 else 240
 near.png 8 8 (9 * x, 9 * x, 9 * x + y % 2)
 orm.tga 8 8 (9 * x, 9 * y, x * y)
@@ -124,6 +126,7 @@ while IFS='|' read -r count first second; do
 	is "$first|$second: $(gltf both.glb '[g.images.length, g.materials.length]')" "$first|$second: [$count,2]"
 done <<'END'
 1|map_Pr m.tga;map_Pm x.tga|map_Pm ./x.tga;map_Pr ./m.tga;Pr 0.5
+1|norm orm.tga;map_Ke orm.tga|norm ./orm.tga
 1|map_Pr -mm 0 0.5 x.tga|map_Pr -mm -0 0.5 x.tga
 2|map_Pr -mm 0 0.5 x.tga|map_Pr -mm 0.1 0.5 x.tga
 2|map_Pr -mm 0 0.5 x.tga|map_Pr -mm 0 0.25 x.tga
@@ -159,15 +162,6 @@ for case in '-s 2 3:1' '-s -1 1:2' '-s 1 -2:2' '-s -1 -1:2' '-o 0.5 0:1'; do
 	exits 0
 	is "${case%:*}:$(gltf both.glb 'g.meshes.length')" "$case"
 done
-
-scene "maps of two sizes: rows of the smaller one lie between its own"
-images write r.png 1 4 '0'
-images write m.png 1 2 '200 * y'
-quad "map_Pr r.png" "map_Pm m.png"
-run quad.obj quad.glb
-exits 0
-images embedded quad.glb 0 made.png
-is "$(images rows made.png '[row[0][2] for row in rows]')" "[50, 50, 150, 150]"
 
 scene "libraries of Blender have its own formula, and its maps"
 cp "$WORK/images/51x.png" .

@@ -146,23 +146,6 @@ run quad.obj quad.glb
 exits 0
 says "65535 x 65535"
 
-scene "many materials with one image have one image"
-images write n.tga 32 16 "$bumps"
-quad "norm n.tga" "map_Ke n.tga" "newmtl second" "norm ./n.tga"
-sed '0,/^f/s/^f/usemtl second\nf/' quad.obj >both.obj
-grep '^f' quad.obj | head -1 >>both.obj
-run both.obj both.glb
-exits 0
-is "$(gltf both.glb 'g.images.length')" 1
-
-scene "the same bytes for every number of threads"
-for i in 1 2 3 4 5 6; do images write n$i.tga 64 $i "$bumps"; done
-quad "norm n1.tga" "map_Kd n2.tga" "map_Ke n3.tga"
-run -j1 quad.obj one.glb
-exits 0
-run -j8 quad.obj eight.glb
-same one.glb eight.glb
-
 # ---- finding ----
 
 scene "a path of another machine is found by its longest end, and that is said"

@@ -1,8 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "folder.h"
 #include "test.h"
-#include <sys/stat.h>
-#include <unistd.h>
 #include "file/path.h"
 
 static void check_data(const char *uri, const char *expected, size_t expected_size)
@@ -94,22 +91,6 @@ TEST(names_outside_are_refused)
 	assert_string_equal(path, "/x.bin");
 }
 
-TEST(links_are_followed_only_within_the_folder)
-{
-	char document[300], path[512];
-	assert_int_equal(mkdir(in_folder("inner"), 0700), 0);
-	put_text_file("inner/a b.bin", "");
-	assert_int_equal(symlink("a b.bin", in_folder("inner/good")), 0);
-	assert_int_equal(symlink("/etc", in_folder("inner/bad")), 0);
-	snprintf(document, sizeof document, "%s", in_folder("inner/a.gltf"));
-	assert_int_equal(resolve(document, "a%20b.bin", 9, false, path), NT_OK);
-	assert_string_equal(path, in_folder("inner/a b.bin"));
-	check_resolve(document, "good", false, NT_OK);
-	check_resolve(document, "bad/passwd", false, NT_ERROR_INPUT);
-	check_resolve(document, "bad/passwd", true, NT_OK);
-	check_resolve(document, "absent.bin", false, NT_ERROR_MISSING);
-}
-
 TEST(paths_are_percent_encoded)
 {
 	nt_buffer text = {0};
@@ -117,5 +98,3 @@ TEST(paths_are_percent_encoded)
 	assert_string_equal(text.data, "dir/a%20b%25c%C3%A9%23.bin");
 	nt_buffer_free(&text);
 }
-
-AROUND_ALL(make_folder, remove_folder)

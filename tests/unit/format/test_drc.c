@@ -109,18 +109,3 @@ TEST(values_that_are_not_finite_are_refused)
 	assert_int_equal(refused, 3);
 	nt_draco_block_free(&block);
 }
-
-TEST(truncated_files_are_refused)
-{
-	nt_draco_block block = encoded(&quad);
-	nt_error error;
-	for (size_t size = 5; size < block.size; size++) {
-		nt_scene scene;
-		unsigned char *copy = malloc(size);
-		memcpy(copy, block.bytes, size);
-		assert_int_equal(open_bytes(&scene, copy, size, &error), NT_ERROR_INPUT);
-		nt_scene_free(&scene);
-		free(copy);
-	}
-	nt_draco_block_free(&block);
-}

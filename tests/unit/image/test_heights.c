@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Heights to normals, by theory: planes are exact, a hemisphere's normals are its radii, flat is (128, 128, 255).
+ * Heights to normals, by theory: planes are exact, flat is (128, 128, 255).
  */
 #include "image/image.h"
 
@@ -100,42 +100,6 @@ TEST(borders_wrap_as_the_sampler_does)
 		assert_slopes(&normals, 0, 0, clamp ? -0.5 : 0, clamp ? -0.5 : 0);
 		nt_pixels_free(&normals);
 	}
-}
-
-/* A hemisphere of radius R lit from anywhere looks as its radii say: (dx, -dy, z) / R. Central differences of step 1
- * are wrong by f'''/6, at 0.8 R by 0.8 R^-2 / 0.6^5 / 2, which is 1e-3 for R = 60; 0.004 leaves room for the rounding
- * of colours to 16 bits and for the other direction. */
-TEST(hemisphere_relit_is_the_hemisphere)
-{
-	enum { SIDE = 128, RADIUS = 60 };
-	static const double lights[][3] = {{0, 0, 1}, {0.6, 0, 0.8}, {0, 0.6, 0.8}, {-0.48, -0.36, 0.8}};
-	nt_pixels heights = make(SIDE, SIDE, 1, 16);
-	for (int y = 0; y < SIDE; y++)
-		for (int x = 0; x < SIDE; x++) {
-			const double dx = x - SIDE / 2, dy = y - SIDE / 2,
-				rest = 1 - (dx * dx + dy * dy) / RADIUS / RADIUS;
-			((uint16_t *)heights.samples)[y * SIDE + x] =
-				(uint16_t)(rest > 0 ? sqrt(rest) * 65535 + 0.5 : 0);
-		}
-	nt_pixels normals = convert(&heights, (double)RADIUS / SIDE, false);
-	double worst = 0;
-	for (int y = 0; y < SIDE; y++)
-		for (int x = 0; x < SIDE; x++) {
-			const double dx = (double)(x - SIDE / 2) / RADIUS, dy = (double)(y - SIDE / 2) / RADIUS;
-			const double z = sqrt(fmax(0, 1 - dx * dx - dy * dy));
-			if (dx * dx + dy * dy > 0.64)
-				continue;
-			for (int l = 0; l < 4; l++) {
-				const double *light = lights[l];
-				double seen = 0;
-				for (unsigned c = 0; c < 3; c++)
-					seen += (at(&normals, (uint32_t)x, (uint32_t)y, c) / 65535.0 * 2 - 1) *
-						light[c];
-				worst = fmax(worst, fabs(seen - (dx * light[0] - dy * light[1] + z * light[2])));
-			}
-		}
-	assert_true(worst < 0.004);
-	nt_pixels_free(&normals);
 }
 
 TEST(normals_without_memory_are_none)
