@@ -325,7 +325,6 @@ static void share_facts(nt_report *report, uint32_t mesh, uint32_t first)
 	facts->same_as = first;
 	facts->name = own.name;
 	facts->place = own.place;
-	facts->why = own.why;
 	facts->gltf_mesh = own.gltf_mesh;
 	facts->gltf_primitive = own.gltf_primitive;
 	facts->texcoord_set = own.texcoord_set;
