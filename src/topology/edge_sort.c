@@ -24,7 +24,6 @@ typedef struct vertex {
 	uint32_t least, most; /* what its representative is between; equal: it is this one */
 	uint32_t number;      /* in the cells; until then, how many corners it has */
 	uint32_t cell;        /* its name; 0: no corners */
-	uint32_t first;       /* corner in the order of triangles: the least, but for one in two halves of a quad */
 } vertex;
 
 /* The array that is sorted. */
@@ -59,7 +58,7 @@ static void count_corners(const nt_welded_mesh *m, vertex *vertices)
 			const uint32_t corner = (uint32_t)nt_triangle_corner(m->triangles, t, k);
 			one->least = nt_least_of(one->least, corner);
 			one->most = nt_most_of(one->most, corner);
-			one->first = one->number++ ? one->first : corner;
+			one->number++;
 		}
 	}
 }
@@ -100,8 +99,8 @@ static void make_cells(edge_array *e)
 	e->used_count = next.vertices;
 	for (size_t v = 0; v < m->vertex_count; v++) {
 		vertex *one = &e->vertices[v];
-		if (counts[one->cell].vertices == 1)
-			one->least = one->most = one->first;
+		/* of a quad cut from 1 to 3 the first may be 3 of 2 and 3, between which there is no other */
+		one->most = counts[one->cell].vertices > 1 ? one->most : one->least;
 		sum += one->most - one->least;
 	}
 	/* about so many vertices are open at each pivot */
