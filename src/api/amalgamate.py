@@ -198,6 +198,9 @@ class Amalgamation:
 			for name in unused:
 				text = re.sub(r'(?:^/\*(?:(?!\*/).)*\*/\n)?^static [^;={}()]*\b' + name +
 					r'\([^{};]*\)(?:;\n|\n\{\n.*?^\}\n)', '', text, flags=re.M | re.S)
+			for name in re.findall(r'^enum \{ (\w+) = [^,}]* \};', plain, re.M):
+				if words[name] == 1:
+					text = re.sub(r'(?:^/\*(?:(?!\*/).)*\*/\n)?^enum \{ ' + name + ' = .*\n', '', text, flags=re.M)
 			for name in types:
 				text = re.sub(r'(?:^/\*(?:(?!\*/).)*\*/\n)?^typedef struct ' + name + r' \{[^}]*\} ' + name + ';\n',
 					'', text, flags=re.M | re.S)

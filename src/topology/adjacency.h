@@ -111,9 +111,8 @@ static inline uint32_t nt_adjacency_count(const nt_adjacency *a, uint32_t vertex
 static inline bool nt_adjacency_load(const nt_adjacency *a, uint32_t place, nt_fan_entry *entry)
 {
 	if (!nt_adjacency_is_narrow(a)) {
-		*entry = a->entries[place];
-		entry->next &= NT_ENTRY_VERTEX;
-		entry->previous &= NT_ENTRY_VERTEX;
+		const nt_fan_entry *wide = &a->entries[place];
+		*entry = (nt_fan_entry){wide->next & NT_ENTRY_VERTEX, wide->previous & NT_ENTRY_VERTEX};
 		return !(entry->next & NT_ENTRY_VOID);
 	}
 	const uint32_t both = a->narrow[place];

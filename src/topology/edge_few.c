@@ -27,7 +27,6 @@ enum {
 	MOST_IN_CELL = 511, /* vertices; and of a part that is halved */
 	MOST_IN_PART = 63,
 	MOST_FINDS = 3,    /* cells of which all corners are listed */
-	MOST_PASSES = 1,   /* over the rows of many vertices */
 	BLOCK = 32,        /* rows that are cleared, or compared, at a time */
 	LANES = 4
 };
@@ -57,7 +56,6 @@ static uint32_t last_slot(const few *f, uint32_t vertex)
 	return (uint32_t)nt_trailing_zeros(f->bits[vertex % PLACES]);
 }
 
-/* That of any vertex. */
 static uint32_t slot_of(const few *f, uint32_t vertex)
 {
 	const uint32_t slot = last_slot(f, vertex);
@@ -258,10 +256,9 @@ static bool list_corners(const few *f, few_cell *cell)
 	return true;
 }
 
-/* Lists the corners of a part of a cell, in which the vertex that is asked for, whose corners are all in the last
- * triangles, has the same order: while the cell is halved, those that are below leave it, as long as none of them has a
- * corner in the last triangles and these triangles' corners stay where they are. False: it is not known in which order
- * older corners are, of several vertices. */
+/* Lists the corners of a part of a cell, in which the vertex that is asked for, which only the last triangles have, is
+ * in the same order: those below leave it, as long as none of these has a corner there and those corners stay where
+ * they are. False: it is not known in which order older corners of several vertices are. */
 static bool list_last_corners(const few *f, few_cell *cell, const nt_cells *cells, nt_part *part)
 {
 	uint32_t numbers[MOST_SLOTS + 1] = {0}, last = 0, older = 0, count = 0;
@@ -312,7 +309,7 @@ static bool NT_NOINLINE find(few *f, uint32_t slot, bool of_last)
 {
 	few_cell cell;
 	/* many rows are not gone over more than once, nor for an old vertex, which they are unlikely to decide */
-	if (f->are_many && (f->low[slot] < 4 * f->first || f->finds++ == MOST_PASSES))
+	if (f->are_many && (f->low[slot] < 4 * f->first || f->finds++ > 0))
 		return false;
 	if (!list_vertices(f, f->vertices[slot], &cell))
 		return false;
@@ -370,7 +367,7 @@ static bool may_matter(few *f)
 	for (uint32_t left = f->high_ones; left; left &= left - 1) {
 		const uint32_t i = (uint32_t)nt_trailing_zeros(left);
 		if (f->mesh->adjacency->cursors[f->vertices[i]] & NT_CURSOR_HUB) {
-			if ((f->low[i] != f->high[i] && !find(f, i, false)) || f->high[i] >= f->least)
+			if ((f->low[i] != f->high[i] && !find(f, i, f->are_many)) || f->high[i] >= f->least)
 				return true;
 			continue;
 		}

@@ -99,7 +99,6 @@ static void make_cells(edge_array *e)
 	e->used_count = next.vertices;
 	for (size_t v = 0; v < m->vertex_count; v++) {
 		vertex *one = &e->vertices[v];
-		/* of a quad cut from 1 to 3 the first may be 3 of 2 and 3, between which there is no other */
 		one->most = counts[one->cell].vertices > 1 ? one->most : one->least;
 		sum += one->most - one->least;
 	}
