@@ -114,10 +114,13 @@ run -- -quad.obj -out.glb
 exits 0
 exists ./-out.glb
 
-scene "help that cannot be written is an error"
-"$NMTAN" --help >/dev/full 2>"$WORK/err.txt"
-is $? 2
-says "standard output"
+scene "help and reports that cannot be written are an error"
+for words in --help "--check $data/quad.obj" "--check --report-format=json $data/quad.obj"; do
+	# shellcheck disable=SC2086
+	"$NMTAN" $words >/dev/full 2>"$WORK/err.txt"
+	is $? 2
+	says "standard output"
+done
 
 scene "who reads the first line alone gets no message"
 # many more bytes than a pipe holds
@@ -163,6 +166,7 @@ is "$(complete_words nmtan --uv = '')" "auto "
 is "$(complete_words nmtan --ver)" "--verify --verbose --version "
 is "$(complete_words nmtan mes)" "mesh.obj "
 is "$(complete_words nmtan --ignore = UV_MIRROR_L)" "UV_MIRROR_LONE "
+is "$(complete_words nmtan --ignore = '' | wc -w)" "$("$NMTAN" --list-codes | grep -c '^[A-Z]')"
 is "$(complete_words nmtan --severity = TAN_ZERO,UV_FOL)" "TAN_ZERO,UV_FOLDED_QUAD "
 is "$(complete_words nmtan --severity = UV_FOLDED_QUAD = e)" "error "
 is "$(complete_words nmtan --explain = UV_FOL)" "UV_FOLDED_QUAD "
