@@ -60,7 +60,7 @@ NEWER = LAYOUT + [
     ('messages', r'^weld .* WELD_LEFT: -1 \+1$', 'that numbers of elements differ is told before an accessor is read (8e34904f)'),
     ('report', r' /findings (UV_(FLIPPED_TRIANGLE|NEAR_DEGENERATE|DEGENERATE_TRIANGLE|MIRROR_(SEAM|OVERLAP|LONE)|'
                r'MIXED_WINDING_ISLAND)|TAN_MIRROR_SHARED_VERTEX): ', RULES),
-    ('report', r' /seams: | /files/N/meshes/N/(seam_(count|length)|edges/mirror|islands_by_kind/\w+|'
+    ('report', r' /seams: | /files/N/meshes/N/(seam_(count|length)|edges/mirror|triangles_left_out|islands_by_kind/\w+|'
                r'islands/N/(kind|covered_share|twin)): ', RULES),
     ('messages', r' "nmtan: and \d+ more findings that fail', RULES),
     ('report', r" /files/N/verdict: .*( flipped|; and \d+ more')", RULES),
