@@ -310,19 +310,17 @@ static nt_status find_twins(nt_check *check, patches *p)
 	const nt_surface *s = &check->surface;
 	nt_hash_index keys = {0};
 	bool failed = false;
-	for (int pass = 0; pass < 3 && !failed; pass++)
-		for (size_t t = 0; t < s->triangle_count && !failed && (pass == 0 || keys.count); t++) {
+	for (int marks = 0; marks < 2 && !failed; marks++)
+		for (size_t t = 0; t < s->triangle_count && !failed && (!marks || keys.count); t++) {
 			const patch *one = p->numbers[t] == NT_NONE ? NULL : &p->items[p->numbers[t]];
-			if (!one || (pass != 1 && !may_have_twins(check, one)))
+			if (!one || (!marks && !may_have_twins(check, one)))
 				continue;
-			const int orientation = pass == 1 ? -s->orientation[t] : s->orientation[t];
+			const int orientation = marks ? -s->orientation[t] : s->orientation[t];
 			const uint32_t first = find_alike(s, &keys, t, orientation);
-			if (pass == 0 && first == NT_NONE)
+			if (!marks && first == NT_NONE)
 				failed = !nt_hash_index_add(&keys, key_of(s, t, orientation), (uint32_t)t);
-			else if (pass == 1 && first != NT_NONE)
+			else if (marks && first != NT_NONE)
 				nt_bit_set(check->twins, first);
-			else if (pass == 2 && nt_bit(check->twins, first))
-				nt_bit_set(check->twins, t);
 		}
 	for (size_t t = 0; (t = nt_bit_next(check->twins, t, s->triangle_count)) < s->triangle_count; t++)
 		p->items[p->numbers[t]].flipped = false;
@@ -393,7 +391,7 @@ static void report_flipped(nt_check *check, patches *p)
 		area += nt_triangle_area(s, t);
 	}
 	nt_check_report_as(check, &tally, nt_area_severity(check, area), "%zu triangles, %.3g %% of the area,",
-		s->triangle_count, check->total_area > 0.0 ? 100.0 * area / check->total_area : 0.0);
+		s->triangle_count, 100.0 * area / check->total_area);
 }
 
 nt_status nt_check_flips(nt_check *check)

@@ -131,17 +131,33 @@ TEST(what_has_the_hash_of_a_twin_is_none)
 	hand_free(h, report);
 }
 
-/* All of it, or one quad of it, which would be few enough to be flipped. */
+/* All of it, a quad or a triangle of it, which would be few enough to be flipped; the back before the front or behind
+ * it, with any corner first, once or twice; of a mirrored sheet, too. */
 TEST(the_back_of_a_doubled_sheet_shares_texels)
 {
-	for (uint32_t doubled = 2; doubled <= 2 * N * N; doubled += 2 * N * N - 2) {
+	for (uint32_t i = 0; i < 72; i++) {
+		const uint32_t doubled = (const uint32_t[]){2 * N * N, 2, 1}[i % 3], turn = i / 3 % 3;
+		const uint32_t backs = i / 9 % 2 && i % 3 ? 2 * doubled : doubled;
+		const bool before = i / 18 % 2, mirrored = i / 36 % 2;
 		hand_mesh *h = make_grid();
-		for (const uint32_t *i = h->indices; i < h->indices + 3 * doubled; i += 3)
-			hand_triangle(h, i[0], i[2], i[1]);
+		for (uint32_t t = 0; t < backs; t++) {
+			const uint32_t *of = h->indices + 3 * (t % doubled);
+			hand_triangle(h, of[(turn + 2) % 3], of[(turn + 1) % 3], of[turn]);
+		}
+		const uint32_t last = 3 * (uint32_t)(h->mesh.face_count - 1);
+		for (uint32_t c = 0; c < 3 && before; c++) {
+			const uint32_t other = h->indices[c];
+			h->indices[c] = h->indices[last + c];
+			h->indices[last + c] = other;
+		}
+		for (uint32_t v = 0; v < h->mesh.vertex_count && mirrored; v++)
+			h->texcoords[v][0] = N - h->texcoords[v][0];
 		nt_report *report = hand_report(h, NULL);
 		assert_int_equal(hand_findings(report, NT_CODE_UV_FLIPPED_TRIANGLE), 0);
-		assert_int_equal(hand_findings(report, NT_CODE_UV_MIXED_WINDING_ISLAND), 0);
-		assert_int_equal(hand_finding(report, NT_CODE_UV_MIRROR_OVERLAP)->numbers[0].value, doubled);
+		if (!mirrored) {
+			assert_int_equal(hand_findings(report, NT_CODE_UV_MIXED_WINDING_ISLAND), 0);
+			assert_int_equal(hand_finding(report, NT_CODE_UV_MIRROR_OVERLAP)->numbers[0].value, backs);
+		}
 		hand_free(h, report);
 	}
 }
@@ -165,15 +181,16 @@ TEST(what_is_wound_like_two_fifths_of_its_island_is_not_flipped)
 TEST(triangles_area_and_texels_say_whether_one_is_flipped)
 {
 	enum { SEVENTH, EIGHT, TWO, THREE, HALF_OF_AREA, MANY_TEXELS, TEN, NINE, INVISIBLE, VISIBLE, TWO_INVISIBLE,
-		TEXEL, LESS, LOW, LOWER, NEEDLE, WIDER, COUNT };
+		TEXEL, LESS, LOW, LOWER, NEEDLE, WIDER, UNMIRRORED, COUNT };
 	static const size_t flipped[COUNT] = {[SEVENTH] = 1, [TWO] = 2, [TEN] = 1, [VISIBLE] = 1, [TEXEL] = 1,
-		[LOW] = 1, [WIDER] = 1};
+		[LOW] = 1, [WIDER] = 1, [UNMIRRORED] = 1};
 	/* of the column that is folded over, and of triangles that are too large a share */
 	static const size_t seams[COUNT] = {[SEVENTH] = 1, [EIGHT] = 3, [THREE] = 1, [HALF_OF_AREA] = 2,
 		[MANY_TEXELS] = 1, [NINE] = 1};
-	for (int i = 0; i < COUNT; i++) {
+	for (int row = 0; row < 3 * COUNT; row++) {
+		const int i = row % COUNT;
 		hand_mesh *h = make_grid();
-		if (i <= EIGHT || i == HALF_OF_AREA || (i >= TEN && i <= TWO_INVISIBLE))
+		if (i <= EIGHT || i == HALF_OF_AREA || (i >= TEN && i <= TWO_INVISIBLE) || i == UNMIRRORED)
 			set_uv(h, at(0, N), 0.75f, N - 0.75f);
 		/* 6 more are mirrored, at the other side, and one or two: 7 or 8 of 50 */
 		for (uint32_t y = 2; y < N && (i <= EIGHT || i == HALF_OF_AREA); y++)
@@ -184,14 +201,19 @@ TEST(triangles_area_and_texels_say_whether_one_is_flipped)
 			h->positions[at(N, y)][0] = 2 * N - 2;
 		if (i == TWO) /* both triangles at that corner, or all three */
 			set_uv(h, at(0, 0), 1.25f, 1.5f);
-		if (i == THREE)
+		if (i == THREE) {
 			set_uv(h, at(1, 0), 2.1f, 2.2f);
+			h->positions[at(1, 0)][1] = 0.7f; /* 0.15, 0.5 and 0.15 of 24.3 */
+		}
 		if (i == MANY_TEXELS) /* nearly half of them all */
 			set_uv(h, at(N, 0), -16, 21);
 		/* the last row alone: 10 triangles; or without a triangle */
 		if (i == TEN || i == NINE) {
 			h->mesh.face_count = i == TEN ? 2 * N : 2 * N - 1;
 			memmove(h->indices, h->indices + 3 * 2 * N * (N - 1), sizeof(uint32_t[3]) * 2 * N);
+			if (i == NINE) /* the one before the last, which nothing hangs on */
+				memmove(h->indices + 3 * (2 * N - 2), h->indices + 3 * (2 * N - 1),
+					sizeof(uint32_t[3]));
 			h->mesh.corner_count = 3 * h->mesh.face_count;
 			set_uv(h, at(0, N), 0.75f, N - 0.75f);
 		}
@@ -223,6 +245,14 @@ TEST(triangles_area_and_texels_say_whether_one_is_flipped)
 			h->positions[at(N, 0)][1] = 0.5f - (i == NEEDLE ? 0.999f : 1.001f) * 0.05f;
 			h->positions[at(N - 1, 0)][1] = h->positions[at(N, 1)][1] = 0.5f;
 		}
+		for (uint32_t v = 0; v < h->mesh.vertex_count && i == UNMIRRORED; v++)
+			h->texcoords[v][0] = -h->texcoords[v][0];
+		for (uint32_t t = 0; t < h->mesh.face_count; t++) { /* whichever corner is the first */
+			uint32_t *c = h->indices + 3 * t;
+			const uint32_t of[3] = {c[0], c[1], c[2]};
+			for (int k = 0; k < 3; k++)
+				c[k] = of[(k + row / COUNT) % 3];
+		}
 		nt_report *report = hand_report(h, NULL);
 		const size_t told = hand_findings(report, NT_CODE_UV_FLIPPED_TRIANGLE)
 			? hand_finding(report, NT_CODE_UV_FLIPPED_TRIANGLE)->count : 0;
@@ -252,12 +282,13 @@ TEST(what_rounding_to_a_grid_may_have_turned_is_not_flipped)
 		{"at the bound", 71, 9, 1, 255, 1, 0, 0},
 		{"above it", 70, 9, 1, 255, 1, 0, 1},
 		{"too few steps", 71, 8, 1, 254, 1, 0, 1},
+		{"and with another origin", 71, 8, 1, 254, 1, 1, 1},
 		{"eight values: -2 * 16, up to 16 and 18", 62, 0, 2, 255, 1, 0, 0},
 		{"seven of v: -2 * 16, above 16", 62, 0, 1, 255, 1, 0, 1},
 		{"v is not on the grid: 7 * 16 - 8.3 * 16 = -20.8, above 16", 71, 8.3f, 2, 255, 1, 0, 1},
 		{"nor is u: -20.8", 70.7f, 8, 2, 255, 1, 0, 1},
-		{"steps of which floats are roundings", 71, 8, 2, 255, 1 / 1023.0f, 0, 0},
-		{"and one above", 70, 9, 2, 255, 1 / 1023.0f, 0, 1},
+		{"steps of which floats are roundings", 71, 8, 2, 255, 1 / 1023.0f, 0.37f, 0},
+		{"and one above", 70, 9, 2, 255, 1 / 1023.0f, 0.37f, 1},
 		{"a step of 2^-17 of the values", 71, 8, 2, 255, 1, 0x1p17f, 0},
 		{"a step of 2^-18, which may be rounding of floats", 71, 8, 2, 255, 1, 0x1p18f, 1}};
 	for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
