@@ -25,7 +25,10 @@
 enum { MOST_SIDE = 1024, LEAST_SIDE = 48, BLOCKS = NT_GREEN_BLOCKS, LEAST_BLOCKS = 12, LEAST_MIXED = 24 };
 
 /* Tuned on maps of known heights and on public ones: make bench, "green". */
-static const double least_correlation = 0.2, least_agreement = 0.75, least_curvature = 0.002;
+static const double least_correlation = 0.2, least_agreement = 0.75;
+
+/* A curvature is a difference over two pixels. */
+static const double least_curvature = 0.004;
 
 /* Normals that point less out of the surface than this have no reliable slope; neighbours differ by less than that. */
 static const float least_z = 0.2f, most_jump = 0.5f;
@@ -188,7 +191,7 @@ static block sum_block(const slopes *s, size_t column, size_t row)
 				!are_close(here, above) ||
 				!are_close(here, below))
 				continue;
-			const double dp = (double)(below[0] - above[0]) / 2, dq = (double)(right[1] - left[1]) / 2;
+			const double dp = (double)(below[0] - above[0]), dq = (double)(right[1] - left[1]);
 			b.ab += dp * dq;
 			b.aa += dp * dp;
 			b.bb += dq * dq;

@@ -119,7 +119,6 @@ static const uint64_t MOST_PIXELS = (uint64_t)8192 * 8192;
 static nt_status decode(const unsigned char *bytes, size_t size, uint32_t most, nt_pixels *pixels, nt_error *error)
 {
 	uint32_t sides[2];
-	*pixels = (nt_pixels){0};
 	nt_error unused;
 	if (nt_image_size(bytes, size, sides) && ((uint64_t)sides[0] * sides[1] > MOST_PIXELS ||
 		nt_check_image(nt_image_work(bytes, size), 0, size, NULL, &unused)))
