@@ -3,7 +3,7 @@
 
 The text of the sources stays as it is, comments too, but for what one translation unit
 asks:
-- a header comes where it is first included, and all but the API is static;
+- a header comes where it is first included, without the titles of its sections, and all but the API is static;
 - names that two files have for their own get the name of their file behind them, and macros of a C file end with it;
 - functions that nothing calls and structs that nothing has go, and what macros leave out that are always set (ALWAYS);
 - the kernels are compiled once for each instruction set: nmtan.c includes itself, and each time NT_PASS_NAME() makes
@@ -106,7 +106,8 @@ class Amalgamation:
 		if lines[0].startswith('/* SPDX'):
 			lines = lines[1:]
 		guard = [i for i, line in enumerate(lines) if re.match(r'#ifndef NT_\w+_H$', line)]
-		return lines[:guard[0]] + lines[guard[0] + 2:-1] if guard else lines
+		lines = lines[:guard[0]] + lines[guard[0] + 2:-1] if guard else lines
+		return [line for line in lines if not re.match(r'/\* ---- .* ---- \*/$', line)]
 
 	def add(self, path, renamed=()):
 		self.lines.append('/* ---- ' + path + ' ---- */')
