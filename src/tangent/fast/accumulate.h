@@ -338,8 +338,7 @@ static void NT_NOINLINE change_special(const nt_fast *fast, size_t first, size_t
 	static const nt_record note = {.state = NT_STATE_BASE | (NT_STATE_ALL & ~NT_STATE_NO_ANY)};
 	static const uint32_t unsound = NT_STATE_BASE | NT_STATE_NO_ANY | NT_STATE_LOCAL;
 	int sound = 1;
-	size_t others;
-	uint64_t any = nt_flagged(fast->flags + first, count, NT_TRIANGLE_ANY, 0, &others);
+	uint64_t any = nt_fast_flagged(fast->flags + first, count, NT_TRIANGLE_ANY);
 	for (size_t i = 0; i < count; i++) {
 		flags[i] = (uint8_t)(fast->flags[first + i] & ~(any >> i & NT_TRIANGLE_ORIENT));
 		sound &= out->sound[i] | (int)(any >> i & 1);

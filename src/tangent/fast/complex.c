@@ -98,14 +98,12 @@ static nmtan_status collect(nt_complex *c, const nt_settled *settled)
 		return NMTAN_ERROR_MEMORY;
 	const uint32_t plain = (uint32_t)(places - settled->tangled_corners);
 	cursors at = {{0, c->plain_count}, {0, plain}, c->order};
-	for (size_t first = 0; first < count; first += NT_FLAG_WORD)
-		for (uint64_t bits = nt_fast_flagged(fast, first, NT_TRIANGLE_COMPLEX); bits; bits &= bits - 1) {
-			const size_t t = first + (size_t)nt_trailing_zeros(bits);
-			uint32_t copy[3];
-			const uint32_t *v = nt_triangle_vertices(&fast->triangles, t, 1, copy);
-			for (unsigned k = 0; k < 3; k++)
-				place_corner(c, t, v, k, &at);
-		}
+	for (size_t t = 0; (t = nt_next_flagged(fast->flags, t, count, NT_TRIANGLE_COMPLEX)) < count; t++) {
+		uint32_t copy[3];
+		const uint32_t *v = nt_triangle_vertices(&fast->triangles, t, 1, copy);
+		for (unsigned k = 0; k < 3; k++)
+			place_corner(c, t, v, k, &at);
+	}
 	c->vertices[c->vertex_count] = at.place[1];
 	c->corner_count = ordered ? (size_t)(at.order - c->order) : 0;
 	return NMTAN_OK;

@@ -206,6 +206,13 @@ static nmtan_status fill_bins(nt_fast *fast, const nt_kernels *kernels, unsigned
 
 /* 5: settle */
 
+/* Not in line: each byte of code is sent to browsers. */
+NT_NOINLINE uint64_t nt_fast_flagged(const uint8_t *flags, size_t count, uint8_t flag)
+{
+	size_t others;
+	return nt_flagged(flags, count < NT_FLAG_WORD ? count : NT_FLAG_WORD, flag, 0, &others);
+}
+
 /* An "any" triangle that groups of both orientations can reach takes the one that is seeded first. At its
  * vertices order matters, so they are not settled. */
 static void mark_undecided(void *context, size_t begin, size_t end, unsigned thread)
@@ -213,9 +220,10 @@ static void mark_undecided(void *context, size_t begin, size_t end, unsigned thr
 	(void)thread;
 	const nt_fast *fast = context;
 	nt_record *const a = fast->records[0], *const b = fast->records[1];
-	for (size_t word = begin; a && b && word < end; word++)
-		for (uint64_t any = nt_fast_flagged(fast, NT_FLAG_WORD * word, NT_TRIANGLE_ANY); any; any &= any - 1) {
-			const size_t t = NT_FLAG_WORD * word + (size_t)nt_trailing_zeros(any);
+	for (size_t first = NT_FLAG_WORD * begin; a && b && first < NT_FLAG_WORD * end; first += NT_FLAG_WORD)
+		for (uint64_t any = nt_fast_flagged(fast->flags + first, fast->triangle_count - first,
+			NT_TRIANGLE_ANY); any; any &= any - 1) {
+			const size_t t = first + (size_t)nt_trailing_zeros(any);
 			uint32_t copy[3], here[3], all[2] = {NT_STATE_EMPTY, NT_STATE_EMPTY};
 			const uint32_t *v = nt_triangle_vertices(&fast->triangles, t, 1, copy);
 			for (int k = 0; k < 3; k++) {

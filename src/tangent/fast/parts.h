@@ -145,13 +145,8 @@ static inline nt_record *nt_fast_record(const nt_fast *fast, int orient, uint32_
 
 enum { NT_FLAG_WORD = 64 };
 
-/* A bit for each of NT_FLAG_WORD triangles from `first` on, or of those that there are, that has this flag. */
-static inline uint64_t nt_fast_flagged(const nt_fast *fast, size_t first, uint8_t flag)
-{
-	const size_t left = fast->triangle_count - first;
-	size_t others;
-	return nt_flagged(fast->flags + first, left < NT_FLAG_WORD ? left : NT_FLAG_WORD, flag, 0, &others);
-}
+/* A bit for each of `count` flags, or of the first NT_FLAG_WORD, that has this one. */
+uint64_t nt_fast_flagged(const uint8_t *flags, size_t count, uint8_t flag);
 
 /* The triangles whose corners have to be looked at one by one: those that do not have three settled
  * corners, all of them usable, and a determinant whose sign is beyond doubt. */
