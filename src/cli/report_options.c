@@ -127,15 +127,20 @@ static nt_status check_diff(const nt_command *c, nt_error *error)
 	return NT_OK;
 }
 
-/* With the command that makes one. */
+/* With the command that makes one, if its folder is there. */
 static void tell_no_baseline(const char *path, nt_error *error)
 {
 	nt_buffer word = {0};
 	nt_report_format format;
 	const bool named = nt_report_format_of_path(path, &format) && format == NT_REPORT_JSON;
 	nt_shell_word(path, &word);
-	nt_fail(error, NT_ERROR_MISSING, "--baseline: there is no file '%s'; to make it: nmtan --check %s--report=%s "
-		"INPUT...", path, named ? "" : "--report-format=json ", word.data ? word.data : "FILE");
+	const char *option = named ? "" : "--report-format=json ";
+	nt_error folder;
+	if (nt_output_check_folder(path, &folder) == NT_OK)
+		nt_fail(error, NT_ERROR_MISSING, "--baseline: there is no file '%s'; to make it: "
+			"nmtan --check %s--report=%s INPUT...", path, option, word.data ? word.data : "FILE");
+	else
+		nt_fail(error, NT_ERROR_MISSING, "--baseline: there is no file '%s', and no folder for it", path);
 	nt_buffer_free(&word);
 }
 
@@ -178,8 +183,7 @@ nt_status nt_report_plan_make(nt_report_plan *plan, const nt_command *command, b
 	}
 	if (!status && command->baseline) {
 		status = nt_baseline_open(&plan->baseline, command->baseline, error);
-		if (status == NT_ERROR_MISSING && access(command->baseline, F_OK) != 0 &&
-			nt_output_check_folder(command->baseline, error) == NT_OK)
+		if (status == NT_ERROR_MISSING && access(command->baseline, F_OK) != 0)
 			tell_no_baseline(command->baseline, error);
 		plan->options.baseline = &plan->baseline;
 	}

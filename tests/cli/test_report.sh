@@ -239,7 +239,7 @@ exits 2
 says "--baseline: there is no file 'none.json'; to make it: nmtan --check --report=none.json INPUT..."
 run --check --baseline=no/none.json head.obj
 exits 2
-says "no/none.json: cannot write: there is no folder"
+says "--baseline: there is no file 'no/none.json', and no folder for it"
 says_not "to make it"
 for name in none "it's one"; do # the command runs as it stands
 	run --check --baseline="$name" head.obj
