@@ -8,7 +8,8 @@
  *
  * A patch that rounding alone may have turned is not told: its triangles have the height of a line, or, where texture
  * coordinates were rounded to a grid (by Draco, KHR_mesh_quantization or a few decimals in a text), of a step of it.
- * There is no knot in the artist's file then.
+ * There is no knot in the artist's file then. Nor is a patch of reversed faces, whose sides run in the direction of
+ * their neighbours': the layout is right, and MESH_INCONSISTENT_WINDING tells of them.
  *
  * A triangle that is told, or may have been turned, makes no mirror edge, no fold, no overlap and no shared vertex: its
  * bit is set in check->flipped, and its mirror edges go.
@@ -36,13 +37,12 @@
 static const double FLIPPED_SHARE = 0.05, SINGLE_SHARE = 0.1, MINORITY_SHARE = 0.15;
 
 /*
- * A triangle is not told if nobody sees it: it covers less than a texel, or is less than half a texel high, where the
- * texture has 2048 x 2048; or it is a needle in space, whose height is up to a twentieth of its length. Two
- * readers who did not write this judged twenty flipped triangles of public files each. They agreed with all of half a
- * texel or more that were no rounding and no needles (the lowest has 0.54), and refused lower ones, and needles up to
- * a fiftieth; the author looked at eighty more between these limits.
+ * A triangle is not told if nobody sees it: it is less than a texel high, where the texture has 2048 x 2048; or it is a
+ * needle in space, whose height is up to a twentieth of its length. Three readers who did not write this judged twenty
+ * flipped triangles of public files each. They refused needles up to a fiftieth; the last one refused five of 0.62 to
+ * 0.71 texels, whose textures were smaller or not there, and agreed with none below 3.4.
  */
-static const double TEXEL = 1.0 / 2048.0, LEAST_HEIGHT = 0.5, NEEDLE = 0.05;
+static const double TEXEL = 1.0 / 2048.0, NEEDLE = 0.05;
 
 /* How much is wound one way. */
 typedef struct extent {
@@ -54,6 +54,7 @@ typedef struct patch {
 	extent size;
 	uint32_t first;             /* triangle */
 	uint32_t sides;             /* that lie against the other orientation */
+	uint32_t reversed;          /* of these, those that run in the direction of the other side */
 	bool rounded;               /* rounding may have turned all of it */
 	bool flipped;
 	double seen;                /* area of what is told of it */
@@ -231,9 +232,12 @@ static void measure_patches(const nt_check *check, patches *p)
 	}
 	for (size_t i = 0; i < check->mirrors.count; i++)
 		for (int k = 0; k < 2; k++) {
-			const uint32_t number = p->numbers[check->mirrors.items[i].sides[k] / 3];
-			if (number != NT_NONE)
-				p->items[number].sides++;
+			const uint32_t *sides = check->mirrors.items[i].sides;
+			const uint32_t number = p->numbers[sides[k] / 3];
+			if (number == NT_NONE)
+				continue;
+			p->items[number].sides++;
+			p->items[number].reversed += nt_side_point(s, sides[0]) == nt_side_point(s, sides[1]);
 		}
 }
 
@@ -359,13 +363,12 @@ static double longest_square(const float *a, const float *b, const float *c, int
 /* Whether somebody may see that a triangle is turned. */
 static bool is_seen(const nt_surface *s, patches *p, size_t t)
 {
-	const double texels = uv_area(s, t) / (TEXEL * TEXEL);
 	const double length = sqrt(longest_square(nt_side_texcoord(s, 3 * t), nt_side_texcoord(s, 3 * t + 1),
-		nt_side_texcoord(s, 3 * t + 2), 2)) / TEXEL;
+		nt_side_texcoord(s, 3 * t + 2), 2));
 	const double square = longest_square(nt_side_position(s, 3 * t), nt_side_position(s, 3 * t + 1),
 		nt_side_position(s, 3 * t + 2), 3);
-	return texels >= 1.0 && 2.0 * texels >= LEAST_HEIGHT * length &&
-		2.0 * nt_triangle_area(s, t) > NEEDLE * square && !may_be_turned(s, p, t);
+	return 2.0 * uv_area(s, t) >= TEXEL * length && 2.0 * nt_triangle_area(s, t) > NEEDLE * square &&
+		!may_be_turned(s, p, t);
 }
 
 static void report_flipped(nt_check *check, patches *p)
@@ -380,7 +383,7 @@ static void report_flipped(nt_check *check, patches *p)
 			continue;
 		nt_bit_set(check->flipped, t);
 		facts->islands[check->islands[t]].flipped[s->orientation[t] + 1]++;
-		one->seen += is_seen(s, p, t) ? nt_triangle_area(s, t) : 0.0;
+		one->seen += one->reversed < one->sides && is_seen(s, p, t) ? nt_triangle_area(s, t) : 0.0;
 	}
 	for (size_t t = 0; (t = nt_bit_next(check->flipped, t, s->triangle_count)) < s->triangle_count; t++) {
 		const uint32_t island = check->islands[t] + 1;

@@ -181,9 +181,9 @@ TEST(what_is_wound_like_two_fifths_of_its_island_is_not_flipped)
 TEST(triangles_area_and_texels_say_whether_one_is_flipped)
 {
 	enum { SEVENTH, EIGHT, TWO, THREE, HALF_OF_AREA, MANY_TEXELS, TEN, NINE, INVISIBLE, VISIBLE, TWO_INVISIBLE,
-		TEXEL, LESS, LOW, LOWER, NEEDLE, WIDER, UNMIRRORED, COUNT };
-	static const size_t flipped[COUNT] = {[SEVENTH] = 1, [TWO] = 2, [TEN] = 1, [VISIBLE] = 1, [TEXEL] = 1,
-		[LOW] = 1, [WIDER] = 1, [UNMIRRORED] = 1};
+		HIGH, LOW, NEEDLE, WIDER, REVERSED, UNMIRRORED, COUNT };
+	static const size_t flipped[COUNT] = {[SEVENTH] = 1, [TWO] = 2, [TEN] = 1, [VISIBLE] = 1, [HIGH] = 1,
+		[WIDER] = 1, [UNMIRRORED] = 1};
 	/* of the column that is folded over, and of triangles that are too large a share */
 	static const size_t seams[COUNT] = {[SEVENTH] = 1, [EIGHT] = 3, [THREE] = 1, [HALF_OF_AREA] = 2,
 		[MANY_TEXELS] = 1, [NINE] = 1};
@@ -228,15 +228,19 @@ TEST(triangles_area_and_texels_say_whether_one_is_flipped)
 		}
 		if (i == TWO_INVISIBLE)
 			set_uv(h, at(N, 0), N - 0.75f, 0.75f);
-		/* `over` the diagonal of a square that is `side` texels wide: over * side * side texels of UV area, and
-		 * over * side * root 2 high. One texel, and half a texel high */
-		if (i >= TEXEL && i <= LOWER) {
-			const float side = i <= LESS ? 1 : 512;
-			const float over = i <= LESS ? 1 : 0.5f / sqrtf(2) / 512;
-			const float most = 0.5f + (i == TEXEL || i == LOW ? 1.001f : 0.999f) * over;
+		/* `over` the diagonal of a square that is `side` texels wide: over * side * root 2 texels high */
+		if (i == HIGH || i == LOW) {
+			const float side = 512, over = 1 / sqrtf(2) / side;
+			const float most = 0.5f + (i == HIGH ? 1.001f : 0.999f) * over;
 			set_uv(h, at(N, 0), N - most, most);
 			for (uint32_t v = 0; v < h->mesh.vertex_count; v++)
 				set_uv(h, v, side / 2048 * h->texcoords[v][0], side / 2048 * h->texcoords[v][1]);
+		}
+		if (i == REVERSED) { /* the face at the corner */
+			uint32_t *c = h->indices + 3 * (2 * (N - 1));
+			const uint32_t second = c[1];
+			c[1] = c[2];
+			c[2] = second;
 		}
 		/* in space, 1 long and 1/20 high, or more */
 		if (i == NEEDLE || i == WIDER) {
