@@ -2,28 +2,34 @@
 # SPDX-License-Identifier: MIT
 """mutate.py [--all] ROOM N SEED: which of N random faults in the sources of a room do the tests notice?
 
-A copy of the tree in build/mutate gets one fault at a time: a relation, a constant, a statement that is gone. First the
-scripts of the file's room and subject run, which see the tool from outside and outlive a room that is written anew (the unit
-tests of the room, which take seconds, before those that take longest). With --all then all others, but those of cost, pages,
-tree and bindings, and the first scripts again under sanitizers, as `make check` has both. A change that no test notices is
-listed with its line. A fault that does not compile, or that compiles to the same code, does not count. Scripts that do not
-execute the line (gcov says it, of a build of the tree without faults) are passed over; of the others those come first that
-execute it most often in their time. A note keeps how the tests do without a fault for the next seed. ROOM is a folder of
-src ("gltf", "report/render"), or "all". The choice follows from SEED alone.
+A copy of the tree in build/mutate gets all faults that the room's lines can have, in one build: a relation, a constant, a
+statement that is gone. Each stands in a conditional beside what it replaces, and NT_FAULT in the environment chooses one
+(tests/support/faults.py). The last line counts faults that are left out: they do not fit a conditional, do not compile in
+one, or stand in a header. Then each script of the room's subject and each unit test of the room runs without a fault: a
+test that fails is left out; of the others a note keeps the seconds, and which faults each executes, for the next seed. A
+fault is shown to the tests that execute it, those first that execute it most often in their time, until one notices. With
+--all all other tests follow, but those of cost, pages, tree and bindings, and the first scripts again under sanitizers, as
+`make check` has both. A change that no test notices is listed with its line, unless its file compiles to the same code with
+it. ROOM is a folder of src ("gltf", "report/render"), or "all". The choice follows from SEED alone.
 """
 import concurrent.futures
+import contextlib
 import glob
+import hashlib
 import json
 import math
 import os
 import random
 import re
+import shlex
 import signal
 import subprocess
 import sys
 import tempfile
-import threading
 import time
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '../support'))
+from faults import MARKS, file_with_faults, mutations, places_in  # noqa: E402
 
 TREE = os.path.abspath('build/mutate/tree')
 B = 'build/release'
@@ -49,11 +55,8 @@ SUBJECTS = {
 LEFT_OUT = re.compile(r'test_cost|test_page|/tree/|/bindings/')
 
 
-QUICK = 5  # scripts before the unit tests
-
-
-def shell(*words, **more):
-    return subprocess.run(words, cwd=TREE, capture_output=True, text=True, errors='replace', **more)
+def shell(*words):
+    return subprocess.run(words, cwd=TREE, capture_output=True, text=True, errors='replace')
 
 
 def bytes_of(path):
@@ -61,103 +64,72 @@ def bytes_of(path):
         return file.read()
 
 
-def copy_tree():
-    """Files that are the same stay, so that they are not built again."""
-    names = subprocess.run(['git', 'ls-files', '-z'], capture_output=True, check=True, text=True).stdout.split('\0')[:-1]
-    names = [name for name in names if os.path.isfile(name)]
+def write(path, data, mode=0o644):
+    """A file that is the same stays, so that nothing is built again."""
+    if not os.path.exists(path) or bytes_of(path) != data:
+        os.makedirs(os.path.dirname(path), exist_ok=True)
+        with open(path, 'wb') as file:
+            file.write(data)
+    os.chmod(path, mode)
+
+
+def sources():
+    """Files of the room."""
+    root = os.path.join('src', '' if room == 'all' else room)
+    files = subprocess.run(['git', 'ls-files', root], capture_output=True, text=True, check=True).stdout.split()
+    return [path for path in sorted(files) if path.endswith(('.c', '.cpp', '.h')) and not path.startswith('src/bindings')]
+
+
+def copy_tree(names):
+    """The tree without the files that build() writes."""
     for folder, _, files in os.walk(TREE):
         for name in files:
             path = os.path.relpath(os.path.join(folder, name), TREE)
             if path not in names and not path.startswith('build/'):
                 os.remove(os.path.join(TREE, path))
     for name in names:
-        path = os.path.join(TREE, name)
-        if not os.path.exists(path) or bytes_of(path) != bytes_of(name):
-            os.makedirs(os.path.dirname(path), exist_ok=True)
-            with open(path, 'wb') as file:
-                file.write(bytes_of(name))
-            os.chmod(path, os.stat(name).st_mode)
+        if name in lines_of and not name.endswith('.h'):
+            continue
+        write(os.path.join(TREE, name), bytes_of(name), os.stat(name).st_mode)
     for name, at in (('../shared', os.path.join(TREE, '../shared')), ('build/node', os.path.join(TREE, 'build/node'))):
         if os.path.isdir(name) and not os.path.lexists(at):
             os.makedirs(os.path.dirname(at), exist_ok=True)
             os.symlink(os.path.abspath(name), at)
 
 
-def quoted(line):
-    """For each character whether it stands in a string, a character or a comment."""
-    marks, at, inside = [], 0, ''
-    while at < len(line):
-        c = line[at]
-        if not inside and (line.startswith('//', at) or line.startswith('/*', at)):
-            return marks + [True] * (len(line) - at)
-        if inside and c == '\\':
-            marks += [True, True]
-            at += 2
-            continue
-        if c in '"\'' and (not inside or inside == c):
-            inside = '' if inside else c
-            marks.append(True)
-        else:
-            marks.append(bool(inside))
-        at += 1
-    return marks[:len(line)]
-
-
-SWAPS = [('relational', ' < ', ' <= '), ('relational', ' <= ', ' < '), ('relational', ' > ', ' >= '),
-         ('relational', ' >= ', ' > '), ('equality', ' == ', ' != '), ('equality', ' != ', ' == '),
-         ('logic', ' && ', ' || '), ('logic', ' || ', ' && '), ('arith', ' + ', ' - '), ('arith', ' - ', ' + '),
-         ('arith', ' * ', ' + '), ('arith', ' += ', ' -= '), ('return', 'return true;', 'return false;'),
-         ('return', 'return false;', 'return true;')]
-STATEMENT = re.compile(r'^(\t+)(?!return|break|continue|goto|case|default|const |static |else|if|for|while|struct |enum )'
-                       r'(\*?[a-z_][\w.\[\]>-]*( [-+|&*/^]?= .+|\(.*\)|(\+\+|--)));$')
-CHECK = re.compile(r'^(\t+(?:\} else )?(?:else )?if \()(.+)(\)( \{)?)$')
-CALL = re.compile(r'(\b[a-z_]\w*\()([a-z_][\w.>\[\]-]*), ([a-z_][\w.>\[\]-]*)(?=[,)])')
-BIT_FIELD = re.compile(r'^\t[\w ]+ : \d+;')
-NUMBER = re.compile(r'(?<![\w.])(\d+)(?![\w.])')
-
-
-def mutations(line):
-    """All faults that the line can get: (kind, the line with it)."""
-    found, text = [], quoted(line)
-    for kind, old, new in SWAPS:
-        for match in re.finditer(re.escape(old), line):
-            if not any(text[match.start():match.end()]):
-                found.append((kind, line[:match.start()] + new + line[match.end():]))
-    for match in NUMBER.finditer(line):
-        if not text[match.start()]:
-            found.append(('constant', '%s%d%s' % (line[:match.start()], int(match[1]) + 1, line[match.end():])))
-    match = CHECK.match(line)
-    if match and match[2].count('(') == match[2].count(')'):
-        found.append(('skip check', '%s(%s) && 0%s' % match.group(1, 2, 3)))
-    if STATEMENT.match(line) and line.count('(') == line.count(')'):
-        found.append(('delete', STATEMENT.match(line)[1] + ';'))
-    for match in CALL.finditer(line):
-        if not text[match.start()] and match[2] != match[3]:
-            found.append(('swap args', line[:match.start()] + '%s%s, %s' % match.group(1, 3, 2) + line[match.end():]))
-    return found
-
-
-def places(room):
-    """(file, line number) of what may get a fault: code within functions, not declarations, comments, preprocessor."""
-    root = os.path.join('src', '' if room == 'all' else room)
-    files = subprocess.run(['git', 'ls-files', root], capture_output=True, text=True, check=True).stdout.split()
-    for path in sorted(files):
-        if not path.endswith(('.c', '.cpp', '.h')) or path.startswith('src/bindings'):
-            continue
-        comment = False
-        for number, line in enumerate(open(os.path.join(TREE, path), encoding='utf-8').read().split('\n')):
-            if comment or line.lstrip().startswith(('/*', '*')):
-                comment = '*/' not in line
-            elif line.startswith('\t') and not BIT_FIELD.match(line) and mutations(line):
-                yield path, number
+def build(names):
+    """The tree with all faults of the room that compile; returns them."""
+    copy_tree(names)
+    targets = ['all', B + '/tests/preload/calls.so', B + '/tests/unit/ext/test_meshopt'] + [p for p in needed if p.startswith(B)]
+    targets += ['tests'] if everything else []
+    left_out = set()
+    for attempt in range(30):
+        table = []
+        for path in lines_of:
+            if not path.endswith('.h'):  # every file would be compiled anew
+                write(os.path.join(TREE, path), file_with_faults(path, lines_of[path], table, left_out).encode())
+        made = shell('make', '-s', '-k', '-j%d' % JOBS, *targets)
+        if not made.returncode:
+            break
+        before = len(left_out)
+        for path, number, column in set(re.findall(r'^(src/[\w/.-]+):(\d+):(\d+): error', made.stderr, re.M)):
+            line = bytes_of(os.path.join(TREE, path)).decode().split('#line 1\n')[1].split('\n')[int(number) - 1].expandtabs(8)
+            culprits = [int(fault) for fault in re.findall(r'nt_fault\((\d+)\)', line[:int(column)])]
+            begins = [fault[4] for fault in table if fault and fault[0] == path and fault[4] < int(number)]
+            left_out.add(culprits[-1] if culprits and attempt < 4 else (path, max(begins) if begins and attempt < 20 else -1))
+        if before == len(left_out):
+            sys.exit('the tree does not build:\n' + made.stderr[-3000:])
+    if everything and shell('make', '-s', '-j%d' % JOBS, 'config=sanitize', 'all').returncode:
+        sys.exit('the tree does not build with sanitizers')
+    return table
 
 
 def tests_of(path):
     """Scripts of the file's room and subject, those that say most first; unit tests of the room; all others."""
     parts, stem = path.split('/')[1:-1], os.path.basename(path).split('.')[0]
-    programs = sorted(p for p in glob.glob(TREE + '/tests/unit/**/test_*.c', recursive=True) + glob.glob(TREE + '/tests/api/test_*.c'))
-    programs = [B + p[len(TREE):-2] for p in programs]
-    scripts = [p[len(TREE) + 1:] for p in sorted(glob.glob(TREE + '/tests/*/test_*.sh'))]
+    programs = sorted(p for p in glob.glob('tests/unit/**/test_*.c', recursive=True) + glob.glob('tests/api/test_*.c'))
+    programs = [B + '/' + p[:-2] for p in programs]
+    scripts = sorted(glob.glob('tests/*/test_*.sh'))
     scripts = [p for p in scripts if not LEFT_OUT.search(p)]
     words = list(dict.fromkeys(SUBJECTS.get(parts[0], []) + stem.split('_')))
     name = lambda p: os.path.basename(p)[5:-3]
@@ -168,190 +140,123 @@ def tests_of(path):
     return outside, units, [p for p in programs + scripts if p not in outside + units]
 
 
-def fails(test, stopped=None, build=B, prefix=''):
-    """Whether the test notices something."""
+def end_group(find):
+    with contextlib.suppress(OSError, ValueError):  # it has ended
+        os.killpg(find(), signal.SIGKILL)
+
+
+def ask(test, fault=-1, marks=''):
+    """Whether the test notices something, and after how many seconds."""
+    script, _, sanitized = test.partition(', ')
+    built = TREE + '/' + ('build/sanitize' if sanitized else B)
+    limit = min(LIMIT, 10 + 5 * seconds.get(script, LIMIT)) * (4 if sanitized else 1)
     with tempfile.TemporaryDirectory(prefix='nmtan-mutate-', ignore_cleanup_errors=True) as folder:
-        more = dict(os.environ, CMOCKA_MESSAGE_OUTPUT='TAP', NMTAN='%s/%s/nmtan' % (TREE, build), BUILD='%s/%s' % (TREE, build),
-                    ROOT=TREE, WORK=folder, NT_STOP='1', GCOV_PREFIX=prefix)
-        words = ['bash', test] if test.endswith('.sh') else [test]
+        more = dict(os.environ, CMOCKA_MESSAGE_OUTPUT='TAP', NMTAN=built + '/nmtan', BUILD=built, ROOT=TREE, WORK=folder,
+                    NT_STOP='1', NT_FAULT=str(fault), NT_MARKS=marks)
         begin = time.monotonic()
         with open(os.path.join(folder, '.said'), 'w+', errors='replace') as said:
-            run = subprocess.Popen(words, cwd=TREE, env=more, stdin=subprocess.DEVNULL, stdout=said, stderr=subprocess.DEVNULL,
-                                   start_new_session=True)
-            while run.poll() is None:
-                if stopped and stopped.is_set() or time.monotonic() - begin > min(LIMIT, 20 + 5 * seconds.get(test, LIMIT)):
-                    os.killpg(run.pid, signal.SIGKILL)
-                    run.wait()
-                    for server in glob.glob(folder + '/.ask/*/pid'):  # which `ask` in cli.sh began
-                        os.killpg(int(bytes_of(server)), signal.SIGKILL)
-                    break
-                time.sleep(0.02)
+            run = subprocess.Popen(['bash', script] if script.endswith('.sh') else [script], cwd=TREE, env=more,
+                                   stdin=subprocess.DEVNULL, stdout=said, stderr=subprocess.DEVNULL, start_new_session=True)
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                run.wait(limit)
+            took = time.monotonic() - begin
+            end_group(lambda: run.pid)
+            for server in glob.glob(folder + '/.ask/*/pid'):  # which `ask` in cli.sh began
+                end_group(lambda: int(bytes_of(server)))
+            run.wait()
             said.seek(0)
             text = said.read()
-        seconds.setdefault(test, time.monotonic() - begin)
         subprocess.run(['chmod', '-R', 'u+rwX', folder])
-        return run.returncode != 0 or bool(re.search('^not ok(?!.*# SKIP)', text, re.M))
+        return run.returncode != 0 or bool(re.search('^not ok(?!.*# SKIP)', text, re.M)), took
 
 
-def first_that_fails(tests):
-    stopped, found = threading.Event(), []
+def ask_usual(test):
+    """How a test does without a fault: whether it fails, its seconds, and how often it executes each fault."""
+    with tempfile.NamedTemporaryFile() as marks:
+        marks.truncate(MARKS)
+        failed, took = ask(test, marks=marks.name)
+        times = {fault: n for fault, n in enumerate(bytes_of(marks.name)) if n}
+    print(test + (' FAILS without a fault, and is left out' if failed else ': %.1f s, %d faults' % (took, len(times))), flush=True)
+    return test, (failed, took, times)
 
-    def attempt(test):
-        if not stopped.is_set() and fails(test, stopped) and not stopped.is_set():
-            stopped.set()
-            found.append(test)
+
+def kept(names):
+    """The faults in the binary and how tests do without one: of now, or of an earlier run over the same tree."""
+    note, key = TREE + '/../faults.json', hashlib.sha256(repr((room, everything)).encode())
+    for name in names:
+        key.update(name.encode() + b'\0' + bytes_of(name))
+    if os.path.exists(note) and json.loads(bytes_of(note))['key'] == key.hexdigest():
+        return json.loads(bytes_of(note), object_hook=lambda x: {int(k) if k.isdigit() else k: v for k, v in x.items()})
+    if os.path.exists(note):
+        os.remove(note)
+    table = build(names)
     with concurrent.futures.ThreadPoolExecutor(JOBS) as pool:
-        list(pool.map(attempt, tests))
-    return found[0] if found else None
-
-
-def lines_of(room):
-    """Lines of the room with code, and those that the tests before this executed: [path][line] -> times."""
-    found = {}
-    for name in glob.glob('%s/build/debug/%s/**/*.gcda' % (TREE, room), recursive=True):
-        for file in json.loads(shell('gcov', '-i', '-t', name).stdout or '{"files": []}')['files']:
-            lines = found.setdefault(file['file'], {})
-            for line in file['lines']:
-                lines[line['line_number']] = lines.get(line['line_number'], 0) + line['count']
-        os.remove(name)
+        found = {'key': key.hexdigest(), 'table': table, 'usual': dict(pool.map(ask_usual, needed))}
+    write(note, json.dumps(found).encode())
     return found
 
 
-def kept(name, find):
-    """Asks find() about the tree without a fault, or takes the note of an earlier run over the same tree."""
-    note = os.path.join(TREE, '../%s.json' % name)
-    key = shell('sh', '-c', 'cat src/*/*.[ch] src/*/*/*.[ch] tests/cli/* tests/support/* tests/unit/*/*.c tests/unit/*/*/*.c | '
-                'sha256sum').stdout + room
-    if os.path.exists(note) and json.loads(bytes_of(note))['key'] == key:
-        return json.loads(bytes_of(note))['found']
-    found = find()
-    with open(note, 'w', encoding='utf-8') as file:
-        json.dump({'key': key, 'found': found}, file)
-    return found
+def same_code(path, number, new):
+    """Whether the file compiles to the same code with a fault as without."""
+    command = shell('make', '-nB', 'V=1', '%s/%s.o' % (B, path[4:])).stdout
+    command = re.search(r'^(\S.*) -c -o \S+ \S+$', command.replace('\\\n', ' '), re.M)
+    if not command:
+        return False
+    lines, objects = lines_of[path], []
+    for text in (lines, lines[:number] + [new] + lines[number + 1:]):
+        with tempfile.TemporaryDirectory() as folder:
+            words = shlex.split(command[1]) + ['-g0', '-c', '-iquote', os.path.dirname(path), '-o', folder + '/x.o', '-x',
+                                               'c++' if path.endswith('.cpp') else 'c', '-']
+            made = subprocess.run(words, input='\n'.join(text), capture_output=True, text=True)
+            objects.append(bytes_of(folder + '/x.o') if not made.returncode else b'%d' % len(objects))
+    return objects[0] == objects[1]
 
 
-def find_reached(room, scripts):
-    """[script][path] -> lines that it executes."""
-    shell('make', '-s', '-j%d' % JOBS, 'config=debug', 'CFLAGS=--coverage', 'LDFLAGS=--coverage', 'all',
-          'build/debug/tests/preload/calls.so', 'build/debug/tests/unit/ext/test_meshopt')
-    reached = {}
-    for script in scripts:
-        with tempfile.TemporaryDirectory() as prefix:
-            fails(script, build='build/debug', prefix=prefix)
-            top = prefix + TREE + '/build/debug/'
-            for folder, _, files in os.walk(top):
-                for name in files:
-                    path = os.path.relpath(os.path.join(folder, name), top)
-                    if path.startswith(room):
-                        os.replace(os.path.join(folder, name), os.path.join(TREE, 'build/debug', path))
-        lines = {path: sorted(lines.items()) for path, lines in lines_of(room).items()}
-        executed = sum(bool(n) for x in lines.values() for _, n in x)
-        if executed:  # else it was not asked
-            reached[script] = lines
-        print('%s executes %d lines' % (script, executed), flush=True)
-    return reached
-
-
-def find_usual(tests):
-    """Tests that fail without a fault, and the seconds that each takes."""
-    seconds.clear()
-    with concurrent.futures.ThreadPoolExecutor(JOBS) as pool:
-        failing = [test for test, failed in zip(tests, pool.map(fails, tests)) if failed]
-    return failing, seconds
-
-
-def executions(script, path, number):
-    """How often a script executes a line, or the one on which its statement begins."""
-    before = [(line, times) for line, times in reached.get(script, {}).get(path, []) if line <= number]
-    return 1 if script not in reached else before[-1][1] if before else 0
-
-
-def scripts_for(outside, path, number):
-    """Scripts that execute the line, those first that are most likely to notice it soon."""
-    times = {script: executions(script, path, number) for script in outside}
-    cost = lambda script: seconds.get(script, LIMIT) / math.log2(2 + times[script])
-    return sorted([script for script in outside if times[script]], key=cost)
-
-
-def make(*targets):
-    return shell('make', '-s', '-j%d' % JOBS, *targets).returncode == 0
-
-
-def built_code():
-    """A sum of what is built, without the columns that -g1 notes."""
-    return shell('sh', '-c', 'for f in %s/*.so %s/nmtan; do objcopy -S "$f" build/stripped && cat build/stripped; done | sha256sum'
-                 % (B, B)).stdout
-
-
-def try_one(path, number):
-    """Which test notices the fault, and whether it is one from outside."""
-    outside, units, others = [[p for p in tests if p not in ignored] for tests in tests_of(path)]
-    if not make('all'):
-        return 'does not compile', False
-    if built_code() == usual:
-        return 'same code', False
-    outside = scripts_for(outside, path, number + 1)
-    seen = first_that_fails(outside[:QUICK])
-    if seen:
-        return seen, True
-    if not make(*units):
-        return 'does not compile', False
-    seen = first_that_fails(units)
-    if seen:
-        return seen, False
-    seen = first_that_fails(outside[QUICK:])
-    if seen or not everything:
-        return seen, bool(seen)
-    if not make('all', 'tests'):
-        return 'does not compile', False
-    seen = first_that_fails(others)
-    if seen:
-        return seen, seen.endswith('.sh')
-    if not make('config=sanitize', 'all'):
-        return 'does not compile', False
-    scripts = [p for p in outside if 'meshopt' not in p][:4]
-    seen = next(('%s, sanitized' % p for p in scripts if fails(p, build='build/sanitize')), None)
-    return seen, bool(seen)
+def who_notices(fault):
+    """The first test that notices a fault, '' if none does, None if it compiles to the same code."""
+    path, number, _, new = table[fault][:4]
+    executes = lambda p: p in usual and not usual[p][0] and fault in usual[p][2]
+    outside, units, others = [list(filter(executes, tests)) for tests in tests_of(path)]
+    cost = lambda p: usual[p][1] / math.log2(2 + usual[p][2][fault])
+    tests = sorted(outside + units, key=cost)
+    if everything:
+        tests += sorted(others, key=cost) + [p + ', sanitized' for p in sorted(outside, key=cost) if 'meshopt' not in p][:4]
+    seen = next((test for test in tests if ask(test, fault)[0]), '')
+    return None if not seen and same_code(path, number, new) else seen
 
 
 everything = '--all' in sys.argv
-sys.argv = [word for word in sys.argv if word != '--all']
-room, count, seed = sys.argv[1], int(sys.argv[2]), int(sys.argv[3])
+room, count, seed = [int(word) if word.isdigit() else word for word in sys.argv[1:] if word != '--all']
+names = subprocess.run(['git', 'ls-files', '-z'], capture_output=True, check=True, text=True).stdout.split('\0')[:-1]
+names = [name for name in names if os.path.isfile(name)]
+lines_of = {path: bytes_of(path).decode().split('\n') for path in sources()}
+places = [(path, number) for path in lines_of for number in places_in(lines_of[path])]
+needed = sorted({test for path in lines_of for tests in tests_of(path)[:3 if everything else 2] for test in tests})
 seconds = {}  # of each test without a fault
-copy_tree()
-sample = tests_of('src/%s/x.c' % ('gltf' if room == 'all' else room))
-needed = sum(sample[:3 if everything else 2], [])
-if not make('all', *(['tests'] if everything else sample[1] + [B + '/tests/preload/calls.so', B + '/tests/unit/ext/test_meshopt'])):
-    sys.exit('the tree does not build')
-reached = kept('reached', lambda: find_reached('' if room == 'all' else room, sample[0]))
-ignored, seconds = kept('usual', lambda: find_usual(needed))
-for test in sorted(ignored):
-    print('fails without a fault, and is left out: ' + test)
-usual = built_code()
-choices = list(places(room))
+found = kept(names)
+table, usual = found['table'], found['usual']
+seconds = {test: of[1] for test, of in usual.items()}
+number_of = {tuple(fault[:4]): number for number, fault in enumerate(table) if fault}
+of_room = sum(len(mutations(lines_of[path][number])) for path, number in places)
 chance = random.Random(seed)
-noticed = from_outside = tried = 0
-survivors = []
-while tried < count:
-    path, number = chance.choice(choices)
-    full = os.path.join(TREE, path)
-    text = open(full, encoding='utf-8').read()
-    lines = text.split('\n')
-    kind, new = chance.choice(mutations(lines[number]))
-    old, lines[number] = lines[number], new
-    open(full, 'w', encoding='utf-8').write('\n'.join(lines))
-    try:
-        seen, outside = try_one(path, number)
-    finally:
-        open(full, 'w', encoding='utf-8').write(text)
-    where = '%s:%d %s: `%s` -> `%s`' % (path, number + 1, kind, old.strip(), new.strip())
-    if seen not in ('does not compile', 'same code'):
-        tried += 1
-        noticed += bool(seen)
-        from_outside += outside
-        if not seen:
-            survivors.append(where)
-    print('%s  %s' % (seen or 'SURVIVES', where), flush=True)
+asked, tried, by_units, survivors, begin = set(), 0, 0, [], time.monotonic()
+with concurrent.futures.ThreadPoolExecutor(JOBS) as pool:
+    while tried < count and len(asked) < len(number_of):
+        batch = []
+        while len(batch) < count - tried and len(asked) < len(number_of):
+            path, number = chance.choice(places)
+            fault = number_of.get((path, number) + chance.choice(mutations(lines_of[path][number])))
+            if fault is not None and fault not in asked:
+                batch.append(fault)
+                asked.add(fault)
+        for fault, seen in zip(batch, pool.map(who_notices, batch)):
+            path, number, kind, new, _ = table[fault]
+            where = '%s:%d %s: `%s` -> `%s`' % (path, number + 1, kind, lines_of[path][number].strip(), new.strip())
+            print('%s  %s' % ('same code' if seen is None else seen or 'SURVIVES', where), flush=True)
+            tried += seen is not None
+            by_units += bool(seen) and not seen.split(',')[0].endswith('.sh')
+            survivors += [where] if seen == '' else []
 print('\nNo test notices:\n  ' + '\n  '.join(survivors) if survivors else '')
-print('%s, seed %d: %d of %d noticed, %.0f %%; %d of them from outside, %.0f %%' % (
-    room, seed, noticed, tried, 100 * noticed / max(tried, 1), from_outside, 100 * from_outside / max(tried, 1)))
+print('%s, seed %d: %d of %d noticed, %.0f %%, %d of them by unit tests, in %.0f s; ' % (
+    room, seed, tried - len(survivors), tried, 100 - 100 * len(survivors) / max(tried, 1), by_units, time.monotonic() - begin)
+    + "%d of the room's %d faults are not in the binary" % (of_room - len(number_of), of_room))
