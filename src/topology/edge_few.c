@@ -237,7 +237,7 @@ static bool list_vertices(few *f, uint32_t vertex, few_cell *cell)
 /* Lists the corners of a cell's vertices. */
 static bool list_corners(const few *f, few_cell *cell)
 {
-	uint8_t owners[MOST_ROWS]; /* a vertex of the cell, or 0 */
+	uint8_t owners[PLACES]; /* a vertex of the cell, or 0 */
 	nt_cell_corner *corner = cell->corners;
 	const uint32_t *v = f->ids;
 	for (size_t i = 0; i < f->mesh->vertex_count; i += BLOCK)
