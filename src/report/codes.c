@@ -305,10 +305,11 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"of each. Texture is mirrored there. They make no seam and no fold. Nothing is said of what rounding "
 		"may have turned, to float or to a grid on which all coordinates of the mesh lie, as Draco, "
 		"KHR_mesh_quantization and texts with few decimals have them: heights up to 1.4 steps. Nor of what "
-		"nobody sees: less than a texel high (of 2048 x 2048), thinner in space than a twentieth of the "
+		"nobody sees: less than eight texels high (of 2048 x 2048), thinner in space than a twentieth of the "
 		"length, or in a row below a hundred-thousandth of the mesh's area. Nor of faces that are reversed "
-		"among their neighbours (MESH_INCONSISTENT_WINDING), whose layout is right. An info if no material "
-		"of a glTF needs tangents (of an OBJ: of its glTF), and up to a thousandth of the mesh's area.",
+		"among their neighbours (MESH_INCONSISTENT_WINDING), or folded back onto them, whose layout is right. "
+		"An info if no material of a glTF needs tangents (of an OBJ: of its glTF), and up to a thousandth of "
+		"the mesh's area.",
 		"Relax the knot in the UV editor (Blender: UV > Minimize Stretch), or unwrap these triangles again.",
 		"a grid of 4 x 4 quads in which one inner corner's UVs were moved over the opposite edge"),
 	ROW(UV_HARD_EDGE, WARNING, "w-i", LOOK, NULL,

@@ -9,7 +9,7 @@
  * A patch that rounding alone may have turned is not told: its triangles have the height of a line, or, where texture
  * coordinates were rounded to a grid (by Draco, KHR_mesh_quantization or a few decimals in a text), of a step of it.
  * There is no knot in the artist's file then. Nor is a patch of reversed faces, whose sides run in the direction of
- * their neighbours': the layout is right, and MESH_INCONSISTENT_WINDING tells of them.
+ * their neighbours', or of faces that are folded back in space: the layout is right.
  *
  * A triangle that is told, or may have been turned, makes no mirror edge, no fold, no overlap and no shared vertex: its
  * bit is set in check->flipped, and its mirror edges go.
@@ -37,12 +37,15 @@
 static const double FLIPPED_SHARE = 0.05, SINGLE_SHARE = 0.1, MINORITY_SHARE = 0.15;
 
 /*
- * A triangle is not told if nobody sees it: it is less than a texel high, where the texture has 2048 x 2048; or it is a
- * needle in space, whose height is up to a twentieth of its length. Three readers who did not write this judged twenty
- * flipped triangles of public files each. They refused needles up to a fiftieth; the last one refused five of 0.62 to
- * 0.71 texels, whose textures were smaller or not there, and agreed with none below 3.4.
+ * A triangle is not told if nobody sees it: it is less than eight texels high, where the texture has 2048 x 2048; or it
+ * is a needle in space, whose height is up to a twentieth of its length. Readers who did not write this judged twenty
+ * flipped triangles of public files each. The last one agreed with 2 of 10 that are lower than eight texels, for real
+ * textures are smaller, or flat there, and with 8 of 10 that are higher; needles up to a fiftieth were refused before.
  */
-static const double TEXEL = 1.0 / 2048.0, NEEDLE = 0.05;
+static const double LEAST_HEIGHT = 8.0 / 2048.0, NEEDLE = 0.05;
+
+/* Two faces lie on each other in space up to an angle of 10 degrees: -cos of that between their normals. */
+static const double FOLDED = 0.984807753012208;
 
 /* How much is wound one way. */
 typedef struct extent {
@@ -54,7 +57,7 @@ typedef struct patch {
 	extent size;
 	uint32_t first;             /* triangle */
 	uint32_t sides;             /* that lie against the other orientation */
-	uint32_t reversed;          /* of these, those that run in the direction of the other side */
+	uint32_t reversed;          /* of these, those that are turned over in space, too */
 	bool rounded;               /* rounding may have turned all of it */
 	bool flipped;
 	double seen;                /* area of what is told of it */
@@ -215,6 +218,35 @@ static void add_extent(extent *sum, const extent *other)
 	sum->uv_area += other->uv_area;
 }
 
+/* Twice the area of a side's triangle, along its normal. */
+static void normal_of(const nt_surface *s, uint32_t side, double normal[3])
+{
+	const uint32_t first = side / 3 * 3;
+	const float *a = nt_side_position(s, first), *b = nt_side_position(s, first + 1);
+	const float *c = nt_side_position(s, first + 2);
+	for (int k = 0; k < 3; k++) {
+		const int i = (k + 1) % 3, j = (k + 2) % 3;
+		normal[k] = ((double)b[i] - a[i]) * ((double)c[j] - a[j]) -
+			((double)b[j] - a[j]) * ((double)c[i] - a[i]);
+	}
+}
+
+/* Whether the triangles at two sides of an edge show different faces to whoever looks at them along a normal. */
+static bool is_turned_over(const nt_surface *s, uint32_t a, uint32_t b)
+{
+	double x[3], y[3], dot = 0.0, xx = 0.0, yy = 0.0;
+	if (nt_side_point(s, a) == nt_side_point(s, b))
+		return true;
+	normal_of(s, a, x);
+	normal_of(s, b, y);
+	for (int k = 0; k < 3; k++) {
+		dot += x[k] * y[k];
+		xx += x[k] * x[k];
+		yy += y[k] * y[k];
+	}
+	return dot < -FOLDED * sqrt(xx) * sqrt(yy);
+}
+
 static void measure_patches(const nt_check *check, patches *p)
 {
 	const nt_surface *s = &check->surface;
@@ -237,7 +269,7 @@ static void measure_patches(const nt_check *check, patches *p)
 			if (number == NT_NONE)
 				continue;
 			p->items[number].sides++;
-			p->items[number].reversed += nt_side_point(s, sides[0]) == nt_side_point(s, sides[1]);
+			p->items[number].reversed += is_turned_over(s, sides[0], sides[1]);
 		}
 }
 
@@ -367,7 +399,7 @@ static bool is_seen(const nt_surface *s, patches *p, size_t t)
 		nt_side_texcoord(s, 3 * t + 2), 2));
 	const double square = longest_square(nt_side_position(s, 3 * t), nt_side_position(s, 3 * t + 1),
 		nt_side_position(s, 3 * t + 2), 3);
-	return 2.0 * uv_area(s, t) >= TEXEL * length && 2.0 * nt_triangle_area(s, t) > NEEDLE * square &&
+	return 2.0 * uv_area(s, t) >= LEAST_HEIGHT * length && 2.0 * nt_triangle_area(s, t) > NEEDLE * square &&
 		!may_be_turned(s, p, t);
 }
 

@@ -181,9 +181,9 @@ TEST(what_is_wound_like_two_fifths_of_its_island_is_not_flipped)
 TEST(triangles_area_and_texels_say_whether_one_is_flipped)
 {
 	enum { SEVENTH, EIGHT, TWO, THREE, HALF_OF_AREA, MANY_TEXELS, TEN, NINE, INVISIBLE, VISIBLE, TWO_INVISIBLE,
-		HIGH, LOW, NEEDLE, WIDER, REVERSED, UNMIRRORED, COUNT };
+		HIGH, LOW, NEEDLE, WIDER, REVERSED, FOLDED, OPEN, UNMIRRORED, COUNT };
 	static const size_t flipped[COUNT] = {[SEVENTH] = 1, [TWO] = 2, [TEN] = 1, [VISIBLE] = 1, [HIGH] = 1,
-		[WIDER] = 1, [UNMIRRORED] = 1};
+		[WIDER] = 1, [OPEN] = 1, [UNMIRRORED] = 1};
 	/* of the column that is folded over, and of triangles that are too large a share */
 	static const size_t seams[COUNT] = {[SEVENTH] = 1, [EIGHT] = 3, [THREE] = 1, [HALF_OF_AREA] = 2,
 		[MANY_TEXELS] = 1, [NINE] = 1};
@@ -230,13 +230,21 @@ TEST(triangles_area_and_texels_say_whether_one_is_flipped)
 			set_uv(h, at(N, 0), N - 0.75f, 0.75f);
 		/* `over` the diagonal of a square that is `side` texels wide: over * side * root 2 texels high */
 		if (i == HIGH || i == LOW) {
-			const float side = 512, over = 1 / sqrtf(2) / side;
+			const float side = 512, over = 8 / sqrtf(2) / side;
 			const float most = 0.5f + (i == HIGH ? 1.001f : 0.999f) * over;
 			set_uv(h, at(N, 0), N - most, most);
 			for (uint32_t v = 0; v < h->mesh.vertex_count; v++)
 				set_uv(h, v, side / 2048 * h->texcoords[v][0], side / 2048 * h->texcoords[v][1]);
 		}
-		if (i == REVERSED) { /* the face at the corner */
+		/* the face at the corner is folded over its diagonal in space, too, but for 9 or 11 degrees */
+		if (i == FOLDED || i == OPEN) {
+			const float angle = (i == FOLDED ? 9.0f : 11.0f) * (float)(3.14159265358979 / 180.0);
+			set_uv(h, at(N, 0), N - 0.75f, 0.75f);
+			h->positions[at(N, 0)][0] = N - 0.5f - 0.5f * cosf(angle);
+			h->positions[at(N, 0)][1] = 0.5f + 0.5f * cosf(angle);
+			h->positions[at(N, 0)][2] = sqrtf(0.5f) * sinf(angle);
+		}
+		if (i == REVERSED) { /* that face */
 			uint32_t *c = h->indices + 3 * (2 * (N - 1));
 			const uint32_t second = c[1];
 			c[1] = c[2];
@@ -291,8 +299,8 @@ TEST(what_rounding_to_a_grid_may_have_turned_is_not_flipped)
 		{"seven of v: -2 * 16, above 16", 62, 0, 1, 255, 1, 0, 1},
 		{"v is not on the grid: 7 * 16 - 8.3 * 16 = -20.8, above 16", 71, 8.3f, 2, 255, 1, 0, 1},
 		{"nor is u: -20.8", 70.7f, 8, 2, 255, 1, 0, 1},
-		{"steps of which floats are roundings", 71, 8, 2, 255, 1 / 1023.0f, 0.37f, 0},
-		{"and one above", 70, 9, 2, 255, 1 / 1023.0f, 0.37f, 1},
+		{"steps of which floats are roundings", 71, 8, 2, 255, 1 / 120.0f, 0.37f, 0},
+		{"and one above", 70, 9, 2, 255, 1 / 120.0f, 0.37f, 1},
 		{"a step of 2^-17 of the values", 71, 8, 2, 255, 1, 0x1p17f, 0},
 		{"a step of 2^-18, which may be rounding of floats", 71, 8, 2, 255, 1, 0x1p18f, 1}};
 	for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
