@@ -7,6 +7,7 @@
  * Sums of nearly the same members share no work: from the first member on that only one of them has, each adds all the
  * others again, since floats do not associate. MikkTSpace has as many sums, and no shorter way to their bytes is known.
  */
+#include "tangent/fast/parts.h"
 #include "tangent/fast/complex.h"
 
 #include <string.h>
@@ -505,4 +506,11 @@ nmtan_status nt_take_vertex(const nt_complex *c, nt_batch *b, size_t v)
 		if (!done[(c->corners[i] & NT_COMPLEX_PLUS) != 0] && (c->group[i] != NT_NONE || b->results))
 			add_to_batch(c, b, i);
 	return NMTAN_OK;
+}
+
+/* Not in line: each byte of code is sent to browsers. */
+NT_NOINLINE uint64_t nt_fast_flagged(const uint8_t *flags, size_t count, uint8_t flag)
+{
+	size_t others;
+	return nt_flagged(flags, count < NT_FLAG_WORD ? count : NT_FLAG_WORD, flag, 0, &others);
 }

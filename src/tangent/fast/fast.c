@@ -206,13 +206,6 @@ static nmtan_status fill_bins(nt_fast *fast, const nt_kernels *kernels, unsigned
 
 /* 5: settle */
 
-/* Not in line: each byte of code is sent to browsers. */
-NT_NOINLINE uint64_t nt_fast_flagged(const uint8_t *flags, size_t count, uint8_t flag)
-{
-	size_t others;
-	return nt_flagged(flags, count < NT_FLAG_WORD ? count : NT_FLAG_WORD, flag, 0, &others);
-}
-
 /* An "any" triangle that groups of both orientations can reach takes the one that is seeded first. At its
  * vertices order matters, so they are not settled. */
 static void mark_undecided(void *context, size_t begin, size_t end, unsigned thread)
