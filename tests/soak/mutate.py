@@ -255,7 +255,8 @@ with concurrent.futures.ThreadPoolExecutor(JOBS) as pool:
             print('%s  %s' % ('same code' if seen is None else seen or 'SURVIVES', where), flush=True)
             tried += seen is not None
             by_units += bool(seen) and not seen.split(',')[0].endswith('.sh')
-            survivors += [where] if seen == '' else []
+            if seen == '':
+                survivors.append(where + ('' if any(fault in of[2] for of in usual.values()) else ', which no test executes'))
 print('\nNo test notices:\n  ' + '\n  '.join(survivors) if survivors else '')
 print('%s, seed %d: %d of %d noticed, %.0f %%, %d of them by unit tests, in %.0f s; ' % (
     room, seed, tried - len(survivors), tried, 100 - 100 * len(survivors) / max(tried, 1), by_units, time.monotonic() - begin)
