@@ -273,7 +273,8 @@ static uint64_t fingerprint_of(const nt_report_finding *finding, const nt_report
 	for (int i = 0; i < 6; i++) {
 		const double value = i < 3 ? finding->box.minimum[i] : finding->box.maximum[i - 3];
 		const double steps = extent > 0.0 ? (value - mesh->box.minimum[i % 3]) / extent * 128.0 : 0.0;
-		const int32_t step = (int32_t)lround(steps); /* the mesh's box has the finding's in it: 0 to 128 */
+		/* from 0 to 128; not so along an axis on which no coordinate of the finding is finite */
+		const int32_t step = isfinite(steps) && fabs(steps) < 1e6 ? (int32_t)lround(steps) : 0;
 		const unsigned char bytes[4] = {(unsigned char)step, (unsigned char)(step >> 8),
 			(unsigned char)(step >> 16), (unsigned char)(step >> 24)};
 		hash = hash_bytes(hash, bytes, sizeof bytes);
