@@ -182,19 +182,19 @@ static bool find_all(edge_array *e)
 {
 	nt_cells *c = &e->cells;
 	vertex *const vertices = e->vertices;
-	bool done = true, is_halved = c->corners;
+	bool done = true;
 	if (!place(e))
 		return false;
 	for (nt_part *cell = e->parts + 1; cell <= e->parts + e->cell_count; cell++) {
-		/* many have one vertex; a part of a cell that has been halved has others than these numbers */
-		if (cell->vertex_count == 1 || is_halved)
+		if (cell->vertex_count == 1) /* many have one */
 			continue;
+		/* as corners lie in memory; a cell that has been halved may lack some of its vertices here */
 		for (uint32_t i = cell->vertices, end = i + cell->vertex_count; i < end && done; i++)
 			done = nt_cells_find(c, cell, i);
 	}
 	for (size_t v = 0; v < e->mesh->vertex_count && done; v++)
 		if (vertices[v].least < vertices[v].most) {
-			done = !is_halved || nt_cells_find(c, &e->parts[vertices[v].cell], vertices[v].number);
+			done = nt_cells_find(c, &e->parts[vertices[v].cell], vertices[v].number);
 			if (done)
 				vertices[v].least = vertices[v].most = nt_cells_found(c, vertices[v].number);
 		}

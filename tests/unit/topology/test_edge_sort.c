@@ -397,7 +397,8 @@ static uint32_t below(uint32_t limit)
 	return (chance >> 8) % limit;
 }
 
-/* How a mesh ends. QUADS: of two halves, one collapsed; SHUFFLED: in no order; MANY: doubles, and
+/* How a mesh ends. QUADS: of two halves, one collapsed; SHUFFLED: in no order, and each halving of a cell of some parts
+ * one vertex from the others; MANY: doubles, and
  * behind them more triangles of old vertices than are looked at first, of a mesh that is then looked at again. */
 typedef enum tail_form {
 	PLAIN,
@@ -416,12 +417,13 @@ typedef enum tail_form {
 static size_t make_tail(tail_form form, uint32_t *ids, uint32_t *cuts)
 {
 	const uint32_t columns = form == MANY ? 62 : 1 + below(10), rows = form == MANY ? 34 : 1 + below(9);
-	const bool turned = below(2), lattice = below(2);
+	const bool turned = below(2), lattice = below(2), uneven = form == SHUFFLED && below(2);
 	size_t count = 0;
 	for (uint32_t v = 0; v < MOST; v++) {
 		const float noise = lattice ? 0 : (float)below(64) / 8192;
 		positions[v][turned] = (float)(v % (columns + 1)) + noise;
-		positions[v][!turned] = (float)(v / (columns + 1)) * 0.25f;
+		const uint32_t row = v / (columns + 1);
+		positions[v][!turned] = uneven ? ldexpf(1, -(int)row) : (float)row * 0.25f;
 		positions[v][2] = noise;
 	}
 	for (uint32_t q = 0; q < columns * rows; q++) {
