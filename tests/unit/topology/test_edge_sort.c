@@ -397,9 +397,9 @@ static uint32_t below(uint32_t limit)
 	return (chance >> 8) % limit;
 }
 
-/* How a mesh ends. QUADS: of two halves, one collapsed; SHUFFLED: in no order, and each halving of a cell of some parts
- * one vertex from the others; MANY: doubles, and
- * behind them more triangles of old vertices than are looked at first, of a mesh that is then looked at again. */
+/* How a mesh ends. QUADS: of two halves, one collapsed; SHUFFLED: in no order, and in some of these meshes each halving
+ * of a cell parts one vertex from the others; MANY: doubles, and behind them more triangles of old vertices than are
+ * looked at first, of a mesh that is then looked at again. */
 typedef enum tail_form {
 	PLAIN,
 	OLD_VERTICES,
@@ -576,6 +576,37 @@ TEST(every_form_of_a_tail_is_as_specified)
 		assert_true(shown > 0 || form == PLAIN);
 		assert_true(known > 0 || form != PLAIN);
 	}
+}
+
+/* Many triangles, none of which shares an edge with another. The last ten are two degenerate ones, three plain ones
+ * and five degenerate ones. These seven have all corners of a hub, which shares its cell with one old vertex, so that
+ * its first corner stands for it: it is below the plain ones. Its cell is only searched among the last triangles'
+ * corners, since those of all would not fit. */
+TEST(a_hub_of_many_triangles_is_found_from_the_last)
+{
+	enum { OLD = 20000, LAST = 10, FIRST_PLAIN = 2, END_PLAIN = 5 };
+	enum { HUB_VERTEX = 3 * OLD, VERTICES = HUB_VERTEX + 10 };
+	static uint32_t ids[3 * (OLD + LAST)];
+	static float rows[VERTICES + 1][3];
+	for (uint32_t v = 0; v < VERTICES; v++)
+		rows[v][0] = (float)(v + (v >= HUB_VERTEX - 1 ? 100 : 0) + (v > HUB_VERTEX ? 100 : 0));
+	for (uint32_t i = 0; i < 3 * OLD; i++)
+		ids[i] = i;
+	for (uint32_t t = 0, next = HUB_VERTEX + 1; t < LAST; t++)
+		for (uint32_t k = 0; k < 3; k++)
+			ids[3 * (OLD + t) + k] = t >= FIRST_PLAIN && t < END_PLAIN ? next++ : k < 2 ? HUB_VERTEX : t;
+	const nt_triangles all = {.ids = ids};
+	nt_scratch scratch;
+	nt_scratch_init(&scratch, NULL);
+	nt_adjacency a;
+	assert_int_equal(surround(&all, rows, OLD + LAST, VERTICES, 0, &scratch, &a), NMTAN_OK);
+	assert_true(a.cursors[HUB_VERTEX] & NT_CURSOR_HUB);
+	const nt_welded_mesh mesh = {.triangles = &all, .triangle_count = OLD + LAST, .vertex_count = VERTICES,
+		.positions = rows[0], .step = 3, .adjacency = &a, .scratch = &scratch};
+	nt_grid grid;
+	assert_true(nt_grid_of_used(&mesh, &grid));
+	assert_true(nt_edges_are_sorted(&mesh, grid, true));
+	nt_scratch_free(&scratch);
 }
 
 /* Memory that says nothing useful. */
