@@ -89,7 +89,7 @@ static bool NT_NOINLINE take_last(few *f, uint32_t triangles)
 			f->seen[slot]++;
 		}
 	f->slot_count = count;
-	f->low[0] = f->seen[0] = 0;
+	f->vertices[0] = f->seen[0] = 0; /* of slot 0 nothing else is read */
 	const nt_adjacency *a = f->mesh->adjacency;
 	for (uint32_t i = 1; i <= count; i++) {
 		const uint32_t cursor = a->cursors[f->vertices[i]];
@@ -235,7 +235,7 @@ static bool list_vertices(few *f, uint32_t vertex, few_cell *cell)
 }
 
 /* Lists the corners of a cell's vertices. */
-static bool list_corners(const few *f, few_cell *cell)
+static void list_corners(const few *f, few_cell *cell)
 {
 	uint8_t owners[PLACES]; /* a vertex of the cell, or 0 */
 	nt_cell_corner *corner = cell->corners;
@@ -253,7 +253,6 @@ static bool list_corners(const few *f, few_cell *cell)
 			corner += of[k] != 0;
 		}
 	}
-	return true;
 }
 
 /* Lists the corners of a part of a cell, in which the vertex that is asked for, which only the last triangles have, is
@@ -322,9 +321,11 @@ static bool NT_NOINLINE find(few *f, uint32_t slot, bool of_last)
 		f->high[slot] = f->low[slot]; /* its first corner */
 		return true;
 	}
-	const bool listed = !of_last ? cell.count <= MOST_IN_PART && list_corners(f, &cell)
-		: f->low[slot] >= 4 * f->first && list_last_corners(f, &cell, &cells, &all);
-	if (!listed || !nt_cells_find(&cells, &all, cell.wanted))
+	if (!of_last && cell.count <= MOST_IN_PART)
+		list_corners(f, &cell);
+	else if (!of_last || f->low[slot] < 4 * f->first || !list_last_corners(f, &cell, &cells, &all))
+		return false;
+	if (!nt_cells_find(&cells, &all, cell.wanted))
 		return false;
 	f->low[slot] = f->high[slot] = nt_cells_found(&cells, cell.wanted);
 	return true;
