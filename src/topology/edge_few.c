@@ -106,9 +106,9 @@ static bool find_least(few *f)
 	/* the middle corner of a triangle is not above its second one */
 	for (uint32_t t = f->count; t-- > f->first && 4 * t + 1 > least;) {
 		const uint32_t *v = f->ids + 3 * t;
-		const uint32_t a = f->low[last_slot(f, v[0])], b = f->low[last_slot(f, v[1])];
-		const uint32_t c = f->low[last_slot(f, v[2])];
-		const uint32_t middle = nt_most_of(nt_least_of(a, b), nt_least_of(nt_most_of(a, b), c));
+		const uint32_t low[3] = {
+			f->low[last_slot(f, v[0])], f->low[last_slot(f, v[1])], f->low[last_slot(f, v[2])]};
+		const uint32_t middle = nt_middle_of(low);
 		if (middle > least && !nt_welded_is_degenerate(f->mesh, t, v))
 			least = middle;
 	}
@@ -153,7 +153,7 @@ static void NT_NOINLINE find_beside(few *f)
 	}
 }
 
-/* A cell, as representatives.h halves it. Its vertices have numbers from 1 on. */
+/* A cell, as representatives.c halves it. Its vertices have numbers from 1 on. */
 typedef struct few_cell {
 	uint32_t count, wanted;               /* vertices; the one that is asked for */
 	uint32_t names[MOST_IN_CELL + 1];     /* of vertices */

@@ -203,12 +203,6 @@ static bool find_all(edge_array *e)
 	return true;
 }
 
-/* The one in the middle is the larger lower end of two edges of a triangle, and that of the third is the least. */
-static inline uint32_t middle_of(const uint32_t of[3])
-{
-	return nt_most_of(nt_least_of(of[0], of[1]), nt_least_of(nt_most_of(of[0], of[1]), of[2]));
-}
-
 /* Makes the array of edges. Returns what the largest key is at least. */
 static uint32_t list_edges(edge_array *e)
 {
@@ -235,8 +229,8 @@ static uint32_t list_edges(edge_array *e)
 				keys[count + 2] = nt_least_of(least[2], least[0]);
 			}
 			b.least = nt_least_of(b.least, nt_least_of(nt_least_of(least[0], least[1]), least[2]));
-			b.most = nt_most_of(b.most, middle_of(most));
-			all_least = nt_most_of(all_least, middle_of(least));
+			b.most = nt_most_of(b.most, nt_middle_of(most));
+			all_least = nt_most_of(all_least, nt_middle_of(least));
 			count += 3;
 		}
 		if (count > begin)

@@ -119,6 +119,12 @@ static inline uint32_t nt_most_of(uint32_t a, uint32_t b)
 	return a < b ? b : a;
 }
 
+/* The one in the middle is the larger lower end of two edges of a triangle, and that of the third is the least. */
+static inline uint32_t nt_middle_of(const uint32_t of[3])
+{
+	return nt_most_of(nt_least_of(of[0], of[1]), nt_least_of(nt_most_of(of[0], of[1]), of[2]));
+}
+
 static inline const uint32_t *nt_vertices_of(const nt_welded_mesh *mesh, size_t triangle, uint32_t copy[3])
 {
 	return nt_triangle_vertices(mesh->triangles, triangle, 1, copy);
