@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The first pass: frames and weights of 16 triangles (lanes.h), their flags (parts.h), then, one triangle after the
+ * The first pass: frames and weights of 32 triangles (lanes.h), their flags (parts.h), then, one triangle after the
  * other, the addition to the records of the vertices and the entry in each vertex's fan. Included by kernel.h.
  */
 #ifndef NT_TANGENT_FAST_ACCUMULATE_H

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * MikkTSpace, fast: the bytes of mikktspace.c at the speed of memory. At nearly every vertex all triangles of
- * one orientation are one group. So their sum is made first, 16 triangles at a time, and only then is it checked
+ * one orientation are one group. So their sum is made first, 32 triangles at a time, and only then is it checked
  * whether the definition's groups would give the same; where they may not, they are found.
  *
  *   1 weld        hash every vertex's row, find equal ones                 topology/weld.c
  *   2 cut         quads become triangles
  *   3 adjacency   count the corners of each vertex, make their places      topology/adjacency.c
- *   4 accumulate  frames and weights of 16 triangles at a time, added to   accumulate.h
+ *   4 accumulate  frames and weights of 32 triangles at a time, added to   accumulate.h
  *                 the records of vertices in triangle order                records.c
  *   5 settle      16 vertices at a time: is the record the result?         settle.h
  *   6 write       every corner gets its vertex's result                    write.c

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The passes that need lanes, as plain loops over 16 of them: accumulate.h, settle.h, and here the third, single
- * corners for complex.c. kernel_*.c include this file once for each instruction set, with NT_KERNEL naming the table of
- * its passes.
+ * The passes that need lanes, as plain loops over 32 triangles or 16 vertices: accumulate.h, settle.h, and here the
+ * third, single corners for complex.c. kernel_*.c include this file once for each instruction set, with NT_KERNEL
+ * naming the table of its passes.
  *
  * Each corner comes with the three rows of its triangle, which complex_solve.c has loaded again because the welded ones
  * are overwritten by now. Its triangle's frame is made anew, so that there is nothing to keep. Every value reaches the

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * 16 triangles at a time (spec page, steps 4 and 8), as plain loops of which the compiler makes vectors: their frames,
+ * 32 triangles at a time (spec page, steps 4 and 8), as plain loops of which the compiler makes vectors: their frames,
  * the weighted u direction of each corner, and what holds for all of them. The arithmetic is that of the scalar
  * definition, operation by operation, wherever a value reaches the output. Included by kernel.h.
  */
@@ -25,7 +25,7 @@
 #define LEAST_RATIO 1e-30f
 #define MOST_RATIO 1e30f
 
-/* 16 triangles by component. */
+/* 32 triangles by component. */
 typedef struct lanes_in {
 	NT_ALIGNED(64) float row[3][8][NT_TRIANGLES]; /* corner, float of its nt_weld_row */
 } lanes_in;
@@ -53,7 +53,7 @@ typedef struct lanes_out {
 	for (int vector = 0; vector < (count); vector += WIDTH) \
 		for (int i = vector; i < vector + WIDTH; i++)
 
-/* For 16 triangles, the edges from corner 0 to 1, from 0 to 2 and from 1 to 2. */
+/* For 32 triangles, the edges from corner 0 to 1, from 0 to 2 and from 1 to 2. */
 typedef struct lanes_edges {
 	NT_ALIGNED(64) float of[3][3][NT_TRIANGLES];
 } lanes_edges;
@@ -281,7 +281,7 @@ static inline NT_ALWAYS_INLINE void weigh_more(corner_lanes a, const float *NT_R
 #define UNROLL_CORNERS NT_UNROLL(1)
 #endif
 
-/* Corner k of 16 triangles. */
+/* Corner k of 32 triangles. */
 static inline NT_ALWAYS_INLINE corner_lanes corner_of(const lanes_in *in,
 	const lanes_edges *edges, lanes_out *out, int k)
 {
