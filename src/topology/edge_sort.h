@@ -14,7 +14,7 @@
 
 /*
  * Which of its corners stands for a welded vertex in mikktspace.c as published (spec page, step 2). Nearly always
- * nobody can tell; the edge sort can (edge_sort.h).
+ * nobody can tell; the edge sort can.
  *
  * The published weld sorts corners into 2048 cells along the longest axis of the box of all positions, halves each
  * cell by the middle of its box until nothing is left to halve, swapping corners from both ends, and lets the first

@@ -1,4 +1,7 @@
 /* SPDX-License-Identifier: MIT */
+/*
+ * Representatives of vertices, by halving cells: see edge_sort.h.
+ */
 #include "topology/edge_sort.h"
 
 #include <float.h>

@@ -13,12 +13,11 @@
 #include "base/hash.h"
 #include "base/scratch.h"
 #include "topology/corners.h"
-
-/* ---- a row: loaded from a mesh, its hash, and when two are equal ---- */
-
 #if NT_VECTORS && defined(__SSE2__)
 #include <emmintrin.h>
 #endif
+
+/* ---- a row: loaded from a mesh, its hash, and when two are equal ---- */
 
 /* Attributes of a welded vertex, -0 made +0. */
 typedef struct nt_weld_row {

@@ -16,7 +16,7 @@
  *
  * What is left gathers in batches:
  *
- *   solve     the corners of other groups, in lanes                                 corners.h
+ *   solve     the corners of other groups, in lanes                                 kernel.h
  *   average   and write                                                             complex_solve.c
  *
  * A triangle without a frame takes the orientation of the first group that reaches it, wherever that is. Nothing else

@@ -7,7 +7,6 @@
  * Sums of nearly the same members share no work: from the first member on that only one of them has, each adds all the
  * others again, since floats do not associate. MikkTSpace has as many sums, and no shorter way to their bytes is known.
  */
-#include "tangent/fast/parts.h"
 #include "tangent/fast/complex.h"
 
 #include <string.h>
