@@ -14,9 +14,6 @@
 #include "base/parallel.h"
 #include "gltf/quantize.h"
 
-/* Indices that an accessor without a bufferView may have: nothing in the file backs their number. */
-enum { UNBACKED_INDICES = 65536 };
-
 uint32_t nt_gltf_component_bytes(uint64_t component_type)
 {
 	return component_type == NT_GLTF_INT || component_type > NT_GLTF_FLOAT
@@ -516,7 +513,7 @@ nt_status nt_gltf_indices(nt_gltf *document, const nt_gltf_accessor *accessor, s
 			"the indices of a primitive are %u components of type %u, expected an unsigned "
 			"SCALAR", accessor->components, type);
 	const size_t count = (size_t)accessor->count;
-	if (accessor->view == NT_NONE && !accessor->decoded && count > UNBACKED_INDICES)
+	if (accessor->view == NT_NONE && !accessor->decoded && count > NT_GLTF_UNBACKED)
 		return nt_fail_pointer(error, NT_ERROR_UNSUPPORTED, pointer,
 			"%zu indices without a bufferView", count);
 	const unsigned char *elements = NULL;

@@ -139,6 +139,9 @@ typedef struct nt_gltf_sparse_arrays {
 	uint32_t index_type, index_view, value_view;
 } nt_gltf_sparse_arrays;
 
+/* So many elements an accessor without a bufferView may claim: nothing in the file backs their number. */
+enum { NT_GLTF_UNBACKED = 65536 };
+
 /* An accessor, sound with its views. */
 typedef struct nt_gltf_accessor {
 	uint64_t count;

@@ -143,9 +143,6 @@ static float *take_rows(const compact_view *view, const float *rows, size_t floa
 
 /* ---- a primitive ---- */
 
-/* Elements that an accessor without a bufferView may have when nothing in the file backs the number. */
-enum { UNBACKED_ELEMENTS = 65536 };
-
 /* The attributes that a load takes of a primitive, in the order in which faults are told. */
 enum { POSITIONS, NORMALS, TEXCOORDS, TANGENTS, COLORS, INPUTS };
 
@@ -230,7 +227,7 @@ static nt_status find_inputs(nt_gltf *document, nt_mesh *mesh, const nt_read_opt
 			"accessor %u has %llu elements, POSITION has %zu", in[i]->index,
 			(unsigned long long)in[i]->count, mesh->vertex_count);
 	}
-	return backed || mesh->vertex_count <= UNBACKED_ELEMENTS ? NT_OK :
+	return backed || mesh->vertex_count <= NT_GLTF_UNBACKED ? NT_OK :
 		nt_fail_pointer(error, NT_ERROR_UNSUPPORTED, nt_gltf_of_mesh(mesh).pointer,
 			"%zu vertices, but neither positions nor normals nor texture coordinates have a bufferView",
 			mesh->vertex_count);

@@ -42,16 +42,13 @@ typedef struct welding {
 
 /* ---- what forbids it ---- */
 
-/* Vertices whose positions have no bufferView that are welded: nothing in the file backs their number. */
-enum { UNBACKED_VERTICES = 65536 };
-
 static nt_status find_obstacle(welding *w, nt_scene *scene)
 {
 	const nt_vertex_pool *pool = w->vertices->pool;
 	const nt_gltf_accessor *positions = nt_gltf_named(w->edits->document,
 		nt_json_find(nt_pool_primitive(pool, 0), "attributes"), "POSITION");
 	if (positions && positions->view == NT_NONE && !positions->decoded && !positions->packed &&
-		positions->count > UNBACKED_VERTICES)
+		positions->count > NT_GLTF_UNBACKED)
 		w->obstacle = "no bufferView has its positions";
 	nt_status status = NT_OK;
 	for (size_t i = 0; !status && !w->obstacle && i < pool->user_count; i++) {
