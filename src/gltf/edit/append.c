@@ -162,8 +162,8 @@ static nt_status move_elements(appending *job, target *t, uint32_t *view, uint64
 		memcpy(out + v * stride, elements + nt_vertex_source(job->vertices, v) * step, a->element_bytes);
 	if (!t->stays && !status)
 		nt_edits_leave_accessor(job->edits, a->index);
-	/* how far apart elements are, a view has to say of several accessors; and of matrices of small integers, whose
-	 * last column the Khronos validator takes without its padding */
+	/* A view says how far apart elements are if several accessors share it, or if these are matrices of small
+	 * integers: the Khronos validator takes their last column to have no padding. */
 	const bool is_tight = a->next == NT_NONE && stride == (size_t)a->components * a->component_bytes;
 	return status ? status : nt_packed_add(job->edits, job->buffer, &packing, out, count * stride,
 		NT_GLTF_ARRAY_BUFFER, is_tight ? 0 : (uint32_t)stride, view, offset, job->error);

@@ -104,7 +104,7 @@ static nt_status add_attribute(welding *w, uint32_t index)
 	const nt_gltf_accessor *a;
 	column c = {.of_source = true};
 	nt_status status = nt_gltf_get_accessor(w->edits->document, index, "/accessors", &a, w->error);
-	/* a number that no positions back may be any */
+	/* first, as an accessor without a bufferView may claim any number */
 	if (!status && a->count != w->vertices->old_count)
 		w->obstacle = "its attributes differ in their number of elements";
 	else if (!status && nt_gltf_users_of(w->edits->document, index)->foreign)
