@@ -5,7 +5,6 @@
  */
 #include "cli/options.h"
 
-
 #define FIELD(name)   offsetof(nt_command, name)
 #define SETTING(name) offsetof(nt_command, settings.name)
 

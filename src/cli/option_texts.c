@@ -3,13 +3,13 @@
  * Texts about options: --help, the completions of bash and zsh, and which options shape outputs.
  */
 #include "cli/options.h"
-#include "file/input.h"
-#include "file/path.h"
-#include "report/report.h"
 
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
+#include "file/input.h"
+#include "file/path.h"
+#include "report/report.h"
 
 enum { HELP_COLUMN = 30, HELP_WIDTH = 80 };
 

@@ -7,9 +7,6 @@
  * slip of the finger into a wrong file.
  */
 #include "cli/options.h"
-#include "file/input.h"
-#include "report/report.h"
-#include "scene/values.h"
 
 #include <fnmatch.h>
 #include <inttypes.h>
@@ -19,6 +16,9 @@
 #include <string.h>
 #include <strings.h>
 #include <unistd.h>
+#include "file/input.h"
+#include "report/report.h"
+#include "scene/values.h"
 
 /* The parser's memory: which rows were given. */
 typedef struct parser {

@@ -136,7 +136,6 @@ bool nt_link_is_absolute(const char *name)
 
 /* ---- as links have it ---- */
 
-
 nt_status nt_path_real(nt_buffer *text, const char *path, nt_error *error)
 {
 	nt_buffer spelled = {0};

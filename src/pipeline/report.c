@@ -2,11 +2,11 @@
 /*
  * The report of a run: see stages.h.
  */
-#include "file/input.h"
 #include "pipeline/stages.h"
 
 #include <stdlib.h>
 #include <string.h>
+#include "file/input.h"
 #include "file/path.h"
 #include "format/maps.h"
 #include "image/image.h"

@@ -11,7 +11,6 @@
 
 /* ---- beginning ---- */
 
-
 static nt_status decompress_accessor(nt_gltf *document, uint32_t index, nt_error *error)
 {
 	const nt_gltf_accessor *accessor;

@@ -4,7 +4,6 @@
  */
 #include "report/render/inside.h"
 
-
 /* ---- CSV (RFC 4180): a row per finding ---- */
 
 static void begin(nt_walk *w, nt_buffer *out)
