@@ -79,12 +79,13 @@ static bool add_column(welding *w, column added)
 	return true;
 }
 
-/* Whether new elements take the place of an attribute of a solved user. */
-static bool is_replaced(welding *w, const nt_mesh *mesh, const nt_gltf_use *use)
+/* Whether the output does not have what a user of the pool has there: new elements take its place, or it goes. */
+static bool is_replaced(welding *w, size_t user, const nt_gltf_use *use)
 {
+	const nt_mesh *mesh = nt_pool_mesh(w->vertices->pool, user);
 	const bool tangent = strcmp(use->name, "TANGENT") == 0;
-	if (!mesh)
-		return false;
+	if (!nt_pool_is_solved(w->vertices->pool, user))
+		return tangent && mesh->decision == NT_SKIP_DROPPED;
 	if (!use->object)
 		return tangent || (mesh->normals_made && strcmp(use->name, "NORMAL") == 0) ||
 			(w->bitangents && strcmp(use->name, "_BITANGENT") == 0);
@@ -123,14 +124,12 @@ static nt_status list_columns(welding *w, const nt_stored_tangents *stored)
 	const nt_vertex_pool *pool = w->vertices->pool;
 	nt_status status = NT_OK;
 	for (size_t i = 0; !status && !w->obstacle && i < pool->user_count; i++) {
-		const nt_mesh *solved = nt_pool_is_solved(pool, i) ? nt_pool_mesh(pool, i) : NULL;
 		const nt_json_value *primitive = nt_pool_primitive(pool, i);
-		const bool drops = nt_pool_mesh(pool, i)->decision == NT_SKIP_DROPPED; /* TANGENT, of targets too */
 		w->morph = 0;
 		for (nt_gltf_use u = {0}; !status && nt_gltf_next_use(w->edits->document, primitive, &u);) {
 			if (nt_gltf_users_of(w->edits->document, u.accessor)->idle)
 				w->obstacle = "an accessor that no primitive uses has its bytes";
-			if (!(drops && strcmp(u.name, "TANGENT") == 0) && !is_replaced(w, solved, &u))
+			if (!is_replaced(w, i, &u))
 				status = add_attribute(w, u.accessor);
 		}
 	}
