@@ -109,7 +109,7 @@ nt_status nt_mesh_transform(nt_mesh *mesh, const nt_uv_transform *t, nt_arena *a
 /* ---- tangents of morph targets, between the solve and the output ---- */
 
 /*
- * * Targets are solved one after the other, but vertices are split by all of them, so that the tangents of each target
+ * Targets are solved one after the other, but vertices are split by all of them, so that the tangents of each target
  * have to wait for the last one.
  *
  * Corners of a vertex that have the same tangents so far, the base's and those of the targets before, are one class. A

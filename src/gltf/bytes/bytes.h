@@ -269,7 +269,7 @@ nt_status nt_edits_write(nt_buffer_edits *edits, uint32_t buffer, const nt_file 
 /* The same as base64, without the last group's padding. */
 nt_status nt_edits_encode(nt_buffer_edits *edits, uint32_t buffer, nt_base64 *base64, nt_error *error);
 
-/* ---- edit/write.c ---- */
+/* ---- edit/save.c ---- */
 
 /* Writes the input as it is where that is what the output should be; *written tells. */
 nt_status nt_gltf_copy_unchanged(nt_scene *scene, const nt_write_options *options,

@@ -10,7 +10,7 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 
-/* Memory that Draco takes for each corner and vertex of ordinary meshes: see batch/need.h. */
+/* Memory that Draco takes for each corner and vertex of ordinary meshes. */
 enum { ELEMENT_BYTES = 100 };
 
 /* ---- one ---- */
