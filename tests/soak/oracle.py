@@ -62,6 +62,7 @@ NEWER = LAYOUT + [
                r'MIXED_WINDING_ISLAND)|TAN_MIRROR_SHARED_VERTEX): ', RULES),
     ('report', r' /seams: | /files/N/meshes/N/(seam_(count|length)|edges/mirror|triangles_left_out|islands_by_kind/\w+|'
                r'islands/N/(kind|covered_share|twin)): ', RULES),
+    ('report', r' /findings (NOT_VERIFIED|UV_UNMAPPED): -(\d+) \+\2$', 'words (d3024742), and triangles that are flat in space (b33fdc1c)'),
     ('messages', r' "nmtan: and \d+ more findings that fail', RULES),
     ('report', r" /files/N/verdict: .*( flipped|; and \d+ more')", RULES),
 ]
