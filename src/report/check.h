@@ -157,8 +157,8 @@ static inline nt_severity nt_area_severity(const nt_check *check, double area)
 	return nt_texcoord_severity(check, small ? NT_SEVERITY_INFO : NT_SEVERITY_WARNING);
 }
 
-/* Whether somebody may see a fault of that area. Needles that fill T-junctions are below a hundred-thousandth of the mesh's
- * area; on a texture of 2048 x 2048 that is some forty texels. */
+/* Whether somebody may see a fault of that area. Needles that fill T-junctions are below a hundred-thousandth of the
+ * mesh's area; on a texture of 2048 x 2048 that is some forty texels. */
 static inline bool nt_is_visible(const nt_check *check, double area)
 {
 	return area >= 1e-5 * check->total_area;

@@ -163,7 +163,7 @@ if [ -f "$english" ]; then
 	done | sed 's/\\-/-/g; s/" "//g' >all
 	grep '^| [^w-]' "$english" | cut -d'|' -f3 | tr -d '`' | sed 's/^ //; s/[. ]*$//' | cut -c1-60 >before
 	[ "$(wc -l <before)" -gt 20 ] || wrong "$(cat before)"
-	is "$(while IFS= read -r sentence; do ! grep -qF "$sentence" all || echo "$sentence"; done <before)" ""
+	is "$(while IFS= read -r sentence; do ! grep -qF -e "$sentence" all || echo "$sentence"; done <before)" ""
 else
 	skip_case "../shared is not here"
 fi
