@@ -333,7 +333,8 @@ static nt_status merge_buffers(nt_gltf *document, struct stat *files, nt_error *
 }
 
 /* Refuses a document without all of its files, whether a run needs them or not: its output would be as broken. The
- * fallback of EXT_meshopt_compression has no URI. */
+ * fallback of EXT_meshopt_compression has no URI. An output that is read back names what its source names, which may
+ * be files that nobody needs and that nobody looked for. */
 static nt_status look_for_buffers(nt_scene *scene, nt_gltf *document, nt_error *error)
 {
 	enum { NAMED = 3 };
@@ -462,7 +463,7 @@ nt_status nt_gltf_open(nt_scene *scene, const nt_read_options *options, nt_error
 	/* The meshes, and which of them a scene shows: all, if there is none. */
 	placing all = {.scene = scene, .error = error};
 	status = count_primitives(&all, document);
-	if (!status)
+	if (!status && !scene->written)
 		status = look_for_buffers(scene, document, error);
 	if (!status)
 		status = nt_gltf_separate_draco(document, error);

@@ -255,9 +255,9 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 	ROW(NOT_VERIFIED, WARNING, "www", LOOK, NULL,
 		"tinygltf refuses the output",
 		"--verify has tinygltf read the output, which refuses it: the detail has its message. nmtan's own "
-		"reader alone compared the meshes, if it could open the output. If tinygltf refuses the input too, "
-		"the reason was there before: nmtan keeps what has nothing to do with tangents. It refuses some "
-		"valid documents as well, such as those with KHR_animation_pointer.",
+		"reader alone compared the meshes. If tinygltf refuses the input too, the reason was there before: "
+		"nmtan keeps what has nothing to do with tangents. It refuses some valid documents as well, such as "
+		"those with KHR_animation_pointer.",
 		"Correct the input if it has a fault and programs that use tinygltf are to read it.",
 		"a glTF with a skin without inverseBindMatrices, --verify"),
 	ROW(MESH_NOT_READ, ERROR, "e--", EXPORT, NULL, "the geometry is faulty and was not judged",

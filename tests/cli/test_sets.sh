@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 # Output sets: nothing of anybody else's is touched, and whatever cuts a run short, the main file is whole.
 . "$ROOT/tests/support/cli.sh"
-calls=$BUILD/tests/preload/calls.so
 sets=$ROOT/tests/support/sets.py
 export PYTHONDONTWRITEBYTECODE=1
 
@@ -26,11 +25,6 @@ state() {
 
 as_nobody() {
 	setpriv --reuid=65534 --regid=65534 --clear-groups "$@"
-}
-
-# Runs the tool between the system and itself, with what tests/preload/calls.c takes in the environment.
-run_under_calls() {
-	LD_PRELOAD=$calls ASAN_OPTIONS=${ASAN_OPTIONS-}:verify_asan_link_order=0 run -j1 "$@"
 }
 
 # run_keeping NAME[:NAME] ARGUMENTS...: files of these names, in this folder, cannot be replaced or removed. Only root can have

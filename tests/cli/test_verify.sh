@@ -39,6 +39,17 @@ run --verify "$WORK/layouts/plain.gltf" out.gltf
 exits 0
 says_not NOT_VERIFIED
 
+scene "what nmtan itself cannot read again is a fault of its own, and does not appear"
+for output in out.gltf out.glb; do
+	for options in --verify --existing=keep\ --verify --draco=sequential\ --verify; do
+		rm -f $output
+		NT_CALLS_SPOIL=1 run_under_calls $options "$WORK/layouts/plain.gltf" $output
+		exits 4
+		says "the output cannot be read back: "
+		[ ! -e $output ] || wrong "$options $output is there"
+	done
+done
+
 scene "a buffer that nobody uses and that the run may not look for is none of nmtan's faults"
 gltf "$WORK/layouts/plain.gltf" outside 'g.buffers.push({byteLength: 4})'
 sed -i 's/{"byteLength": *4}/{"byteLength":4,"uri":"..\/nowhere.bin"}/' outside.gltf

@@ -7,6 +7,7 @@
  *   NT_CALLS_KEEP=NAME:NAME     files of these names, in whatever folder, get no other name and no other file gets
  *                               theirs: what the system says of files that are immutable, or of others in a sticky
  *                               folder
+ *   NT_CALLS_SPOIL=1            the first byte that writev() is to write becomes another one
  *   NT_CALLS_CLONE=1            FICLONE has the file system share blocks, for which they are copied here
  *   NT_CALLS_COUNT=FILE         the names of all calls in their order, at the end
  *   NT_CALLS_TRACE=DIR          DIR/log has each call that changes names or makes something lasting, after it
@@ -154,12 +155,21 @@ static void note_name(const char *what, int folder, const char *path)
 
 CALL(ssize_t, write, (int fd, const void *bytes, size_t size), (fd, bytes, size))
 CALL(ssize_t, pwritev, (int fd, const struct iovec *parts, int count, off_t offset), (fd, parts, count, offset))
-CALL(ssize_t, writev, (int fd, const struct iovec *parts, int count), (fd, parts, count))
 CALL(int, fchmod, (int fd, mode_t mode), (fd, mode))
 CALL(int, fchown, (int fd, uid_t user, gid_t group), (fd, user, group))
 CALL(int, fsetxattr, (int fd, const char *name, const void *value, size_t size, int flags),
 	(fd, name, value, size, flags))
 CALL(int, mkdir, (const char *path, mode_t mode), (path, mode))
+
+ssize_t writev(int fd, const struct iovec *parts, int count)
+{
+	if (!enter("writev"))
+		return -1;
+	const ssize_t size = REAL(writev)(fd, parts, count);
+	if (getenv("NT_CALLS_SPOIL") && size > 0 && pwrite(fd, "?", 1, lseek(fd, 0, SEEK_CUR) - size) != 1)
+		_exit(98);
+	return size;
+}
 
 int ioctl(int fd, unsigned long request, ...)
 {

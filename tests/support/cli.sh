@@ -9,6 +9,7 @@
 #   done_testing               at the end
 set -u
 data=$ROOT/data
+calls=$BUILD/tests/preload/calls.so
 cases=0 bad=0
 case_name= case_ok=true
 
@@ -49,6 +50,11 @@ wrong() {
 run() {
 	"$NMTAN" "$@" >"$WORK/out.txt" 2>"$WORK/err.txt" </dev/null
 	status=$?
+}
+
+# Runs the tool between the system and itself, with what tests/preload/calls.c takes in the environment.
+run_under_calls() {
+	LD_PRELOAD=$calls ASAN_OPTIONS=${ASAN_OPTIONS-}:verify_asan_link_order=0 run -j1 "$@"
 }
 
 exits() {

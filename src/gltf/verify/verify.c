@@ -85,7 +85,6 @@ typedef struct verification {
 	const nt_write_options *options;
 	nt_scene found; /* read back */
 	bool edited;    /* else the document is a new one */
-	bool refused;   /* by tinygltf */
 	mesh_check *checks; /* [count] */
 	size_t count;
 } verification;
@@ -430,17 +429,23 @@ static nt_status prepare_loads(nt_scene *found, nt_error *error)
 	return NT_OK;
 }
 
+/* If our reader refuses an output, that is our mistake, whatever tinygltf says. */
+static nt_status fail_reading(nt_status status, nt_error *error)
+{
+	if (status != NT_ERROR_INPUT && status != NT_ERROR_UNSUPPORTED && status != NT_ERROR_MISSING)
+		return status;
+	const nt_error refusal = *error;
+	nt_fail(error, NT_ERROR_INTERNAL, "the output cannot be read back: %s", refusal.message);
+	error->place = refusal.place;
+	return NT_ERROR_INTERNAL;
+}
+
 static nt_status compare_scene(verification *v, nt_error *error)
 {
 	nt_read_options opening = reading;
 	opening.threads = v->options->threads;
 	bool *needed = NULL;
 	nt_status status = nt_gltf_open(&v->found, &reading, error);
-	/* the source may name files outside of its folder, which nobody looks for */
-	if (status && status != NT_ERROR_MEMORY && v->refused) {
-		nt_error_clear(error);
-		return NT_OK;
-	}
 	if (status == NT_OK)
 		status = prepare_loads(&v->found, error);
 	v->checks = nt_calloc(v->scene->mesh_count, sizeof *v->checks);
@@ -455,7 +460,7 @@ static nt_status compare_scene(verification *v, nt_error *error)
 		status = compare_all(v, nt_thread_count(opening.threads), error);
 	free(v->checks);
 	free(needed);
-	return status == NT_ERROR_INPUT ? error->status = NT_ERROR_INTERNAL : status;
+	return fail_reading(status, error);
 }
 
 nt_status nt_verify_gltf(nt_scene *scene, nt_output *output, const char *path, const nt_write_options *options,
@@ -478,25 +483,19 @@ nt_status nt_verify_gltf(nt_scene *scene, nt_output *output, const char *path, c
 		refusal = set.failure;
 		status = refusal.status;
 	}
-	const bool refused = status == NT_ERROR_INPUT;
-	if (refused) {
+	if (status == NT_ERROR_INPUT) {
 		nt_finding_add(&scene->findings, NT_CODE_NOT_VERIFIED, NULL, 1, "%s", refusal.message);
 		status = NT_OK;
 	}
 	if (status == NT_OK) {
 		nt_trace *const trace = nt_trace_use(NULL);
-		verification v = {.scene = scene, .options = options, .refused = refused,
+		verification v = {.scene = scene, .options = options,
 			.edited = scene->format == NT_FORMAT_GLTF || scene->format == NT_FORMAT_GLB};
 		nt_scene_init(&v.found, path);
 		v.found.bytes = file.data;
 		v.found.byte_count = file.size;
 		v.found.written = output;
 		status = compare_scene(&v, error);
-		/* a file that nobody needs, which the input was read without */
-		if (refused && status == NT_ERROR_MISSING) {
-			nt_error_clear(error);
-			status = NT_OK;
-		}
 		nt_scene_free(&v.found);
 		nt_trace_use(trace);
 	} else {

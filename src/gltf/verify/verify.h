@@ -18,11 +18,11 @@
  * within that, and faces of a block in any order if the method is edgebreaker. An output that is written
  * through cannot be read back: nothing is done then. options: those that it was written with; of its threads several
  * compare meshes, with the same result. If tinygltf refuses an output, the scene gets the finding NOT_VERIFIED, and
- * our reader alone compares, if it can open the output.
+ * our reader alone compares.
  *
  * Returns NT_OK; NT_ERROR_INTERNAL where the output is not what it should be, which says mesh and
- * corner, or attribute; NT_ERROR_IO, NT_ERROR_MEMORY; NT_ERROR_UNSUPPORTED for what tinygltf cannot take (4 GB and
- * more).
+ * corner, or attribute, or what our reader refuses; NT_ERROR_IO, NT_ERROR_MEMORY; NT_ERROR_UNSUPPORTED for what
+ * tinygltf cannot take (4 GB and more).
  */
 nt_status nt_verify_gltf(nt_scene *scene, nt_output *output, const char *path, const nt_write_options *options,
 	nt_error *error);
