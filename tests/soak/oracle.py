@@ -183,8 +183,9 @@ def compare_reports(old, new):
         if a != b:
             yield '%s: -%d +%d' % (name, (a - b).total(), (b - a).total())
     a, b = (dict(fields(report)) for report in reports)
+    differ = sets[0] != sets[1]
     for key in sorted(set(a) | set(b)):
-        follows = sets[0] != sets[1] and '/totals/' in key
+        follows = differ and '/totals/' in key
         if a.get(key) != b.get(key) and not follows and not re.search(r'seconds|version$', key):
             yield '%s: %r -> %r' % (re.sub(r'\d+', 'N', key), a.get(key), b.get(key))
 
