@@ -7,7 +7,6 @@
 
 #include <stdlib.h>
 #include <string.h>
-#include "base/hash.h"
 #include "image/image.h"
 
 /* ---- conversions ---- */
@@ -18,28 +17,17 @@ static bool equal_maps(const nt_channel_map *a, const nt_channel_map *b)
 	       a->srgb == b->srgb;
 }
 
-bool nt_conversion_equal(const nt_conversion *a, const nt_conversion *b)
-{
-	for (int k = 0; k < 4; k++)
-		if (a->channels[k].used != b->channels[k].used || a->channels[k].source != b->channels[k].source ||
-			!equal_maps(&a->channels[k].map, &b->channels[k].map))
-			return false;
-	return a->packed == b->packed && a->png == b->png && a->flip == b->flip && a->heights == b->heights &&
-	       a->height == b->height && a->clamp == b->clamp;
-}
-
 /* Adding 0 makes 0 of -0. */
-uint64_t nt_conversion_hash(const nt_conversion *how)
+void nt_conversion_key(const nt_conversion *how, double key[NT_CONVERSION_KEY])
 {
-	double numbers[5 + 4 * 7] = {how->packed, how->png, how->flip, how->height + 0.0,
-		2 * how->heights + how->clamp};
+	const double of_all[] = {how->packed, how->png, how->flip, how->heights, how->height + 0.0, how->clamp};
+	memcpy(key, of_all, sizeof of_all);
 	for (int k = 0; k < 4; k++) {
 		const nt_conversion_channel *i = &how->channels[k];
 		const double of_channel[] = {i->used, i->source, i->map.channel, i->map.base + 0.0, i->map.gain + 0.0,
 			i->map.exponent, i->map.srgb};
-		memcpy(numbers + 5 + 7 * k, of_channel, sizeof of_channel);
+		memcpy(key + 6 + 7 * k, of_channel, sizeof of_channel);
 	}
-	return nt_hash_bytes(0, numbers, sizeof numbers);
 }
 
 bool nt_conversion_decodes(const nt_conversion *how)
@@ -165,7 +153,7 @@ static nt_status take_image(packing *p, int k, const nt_file *file, nt_converted
 	for (int j = 0; j < k; j++)
 		if (is_taken(p, j) && p->how.channels[j].source == i->source)
 			p->owner[k] = p->owner[j];
-	if (p->owner[k] != k && p->pixels[p->owner[k]].samples)
+	if (p->owner[k] != k)
 		return NT_OK;
 	const nt_status status = nt_image_decode(file->data, file->size, &p->pixels[k], error);
 	if (status == NT_ERROR_MEMORY || !status)
@@ -195,7 +183,8 @@ static nt_status judge_alpha(packing *p, nt_converted *made, nt_error *error)
 		return status;
 	i->map.channel = nt_channel_resolve(i->map.channel, from);
 	status = nt_pack_channel(from, &i->map, p->how.clamp, &alpha, 0, error);
-	made->alpha = status ? NT_ALPHA_OPAQUE : nt_alpha_of(&alpha);
+	if (!status)
+		made->alpha = nt_alpha_of(&alpha);
 	i->used = made->alpha != NT_ALPHA_OPAQUE;
 	nt_pixels_free(&alpha);
 	return status;

@@ -85,10 +85,7 @@ static bool is_constant(const nt_pixels *p)
 {
 	const size_t step = p->channels * (p->bits / 8), count = (size_t)p->width * p->height;
 	const char *samples = p->samples;
-	for (size_t i = 1; i < count; i++)
-		if (memcmp(samples, samples + i * step, step) != 0)
-			return false;
-	return true;
+	return memcmp(samples, samples + step, (count - 1) * step) == 0; /* each is the next one */
 }
 
 static void count_pixels(const nt_pixels *p, tally *t)
@@ -100,8 +97,9 @@ static void count_pixels(const nt_pixels *p, tally *t)
 				continue;
 			const float length = sqrtf(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
 			t->counted++;
-			t->not_unit += fabsf(length - 1) > 0.1f;
-			t->blue_below += n[2] < 0 && fabsf(length - 1) <= 0.1f;
+			const bool is_unit = fabsf(length - 1) <= 0.1f;
+			t->not_unit += !is_unit;
+			t->blue_below += is_unit && n[2] < 0;
 		}
 		if (p->bits == 8)
 			count_bands(p, y, t);

@@ -28,6 +28,7 @@ typedef struct source {
 	bool in_question; /* somebody wants to know whether it is grey */
 	bool grey;
 	nt_error error;   /* of looking whether it is grey */
+	uint32_t result;  /* the first that is the file as it is; UINT32_MAX: none */
 } source;
 
 /* In the conversion stand the sources; whether it is one for heights is said by the kind. */
@@ -42,7 +43,7 @@ typedef struct result {
 	nt_texture texture;
 	char *name;
 	nt_error error;
-	uint32_t same; /* an earlier result that is the same file; UINT32_MAX: none */
+	uint32_t same; /* the first result that is the same file */
 } result;
 
 struct nt_textures {
@@ -56,7 +57,8 @@ struct nt_textures {
 	size_t request_count, request_capacity;
 	result *results;
 	size_t result_count, result_capacity;
-	nt_hash_index by_path, by_conversion; /* sources and results */
+	nt_name_table paths;      /* of sources, by their numbers */
+	nt_key_set conversions;   /* of results, by theirs */
 	nt_texture_rules rules;
 	uint64_t pixels;    /* decoded and made */
 	const char *beside; /* path next to which large results are in files; NULL: all are in memory */
@@ -90,8 +92,8 @@ void nt_textures_free(nt_textures *t)
 	free(t->requests);
 	free(t->results);
 	free(t->name_sources);
-	nt_hash_index_free(&t->by_path);
-	nt_hash_index_free(&t->by_conversion);
+	nt_name_table_free(&t->paths);
+	nt_key_set_free(&t->conversions);
 	nt_name_table_free(&t->names);
 	nt_arena_free(&t->arena);
 	free(t);
@@ -124,39 +126,28 @@ static nt_status inspect(nt_textures *t, nt_texture_source *s, nt_error *error)
 	return NT_OK;
 }
 
-/* The source of a path; UINT32_MAX: none. */
-static uint32_t source_of_path(const nt_textures *t, const char *path, uint64_t hash)
-{
-	uint32_t number;
-	for (size_t at = NT_HASH_BEGIN; (number = nt_hash_index_next(&t->by_path, hash, &at)) != UINT32_MAX;)
-		if (strcmp(t->sources[number]->path, path) == 0)
-			break;
-	return number;
-}
-
 static nt_status add_source(nt_textures *t, const nt_image_places *places, const char *name, uint32_t *number,
 	nt_error *error)
 {
 	nt_buffer path = {0};
 	nt_image_found found;
 	const nt_status status = nt_image_find(places, name, &path, &found, error);
-	const uint64_t hash = status ? 0 : nt_hash_bytes(0, path.data, path.size);
-	*number = status ? UINT32_MAX : source_of_path(t, path.data, hash);
-	if (status || *number != UINT32_MAX) {
+	*number = status ? 0 : nt_name_add(&t->paths, path.data, path.size);
+	if (status || *number < t->source_count) {
 		nt_buffer_free(&path);
 		return status;
 	}
-	*number = (uint32_t)t->source_count;
 	source *s = nt_calloc(1, sizeof *s);
-	if (!s || !nt_grow((void **)&t->sources, &t->source_capacity, t->source_count + 1, sizeof *t->sources) ||
-		!nt_hash_index_add(&t->by_path, hash, *number)) {
+	if (*number == UINT32_MAX || !s ||
+		!nt_grow((void **)&t->sources, &t->source_capacity, t->source_count + 1, sizeof *t->sources)) {
 		nt_buffer_free(&path);
 		free(s);
 		return nt_fail_memory(error);
 	}
 	t->sources[t->source_count++] = s;
 	s->path = path.data;
-	s->file = (nt_texture_source){.path = path.data, .found = found};
+	s->result = UINT32_MAX;
+	s->file = (nt_texture_source){.number = *number, .path = path.data, .found = found};
 	return inspect(t, &s->file, error);
 }
 
@@ -338,8 +329,8 @@ static nt_status add_result(nt_textures *t, const nt_conversion *how, unsigned l
 {
 	if (!nt_grow((void **)&t->results, &t->result_capacity, t->result_count + 1, sizeof *t->results))
 		return nt_fail_memory(error);
-	result *r = &t->results[t->result_count++];
-	*r = (result){.how = *how, .same = UINT32_MAX,
+	result *r = &t->results[t->result_count];
+	*r = (result){.how = *how, .same = (uint32_t)t->result_count++,
 		.texture = {.from_heights = how->heights, .packed = how->packed, .lost = lost, .type = NT_IMAGE_OTHER}};
 	nt_texture *texture = &r->texture;
 	list_sources(t, how, texture);
@@ -361,19 +352,15 @@ static nt_status plan_results(nt_textures *t, nt_error *error)
 		nt_conversion how = conversion_of(t, &t->requests[i], &lost);
 		if (t->rules.judged_only)
 			nt_conversion_simplify(&how);
-		uint32_t *number = &t->requests[i].result;
-		const uint64_t hash = nt_conversion_hash(&how);
-		size_t at = NT_HASH_BEGIN;
-		while ((*number = nt_hash_index_next(&t->by_conversion, hash, &at)) != UINT32_MAX)
-			if (nt_conversion_equal(&t->results[*number].how, &how) &&
-				t->results[*number].texture.lost == lost)
-				break;
-		if (*number != UINT32_MAX)
-			continue;
-		*number = (uint32_t)t->result_count;
-		status = add_result(t, &how, lost, error);
-		if (!status && !nt_hash_index_add(&t->by_conversion, hash, *number))
+		double key[NT_CONVERSION_KEY + 1];
+		nt_conversion_key(&how, key);
+		key[NT_CONVERSION_KEY] = lost;
+		const uint32_t number = nt_key_add(&t->conversions, key, sizeof key);
+		t->requests[i].result = number;
+		if (number == UINT32_MAX)
 			status = nt_fail_memory(error);
+		else if (number == t->result_count)
+			status = add_result(t, &how, lost, error);
 	}
 	return status;
 }
@@ -490,25 +477,17 @@ static nt_status fatal(const nt_error *failure, nt_error *error)
 }
 
 /* Results that turned out to be a file as it is are one. */
-static nt_status join_results(nt_textures *t, nt_error *error)
+static void join_results(nt_textures *t)
 {
-	nt_hash_index files = {0};
-	nt_status status = NT_OK;
-	for (size_t i = 0; i < t->result_count && !status; i++) {
+	for (size_t i = 0; i < t->result_count; i++) {
 		result *r = &t->results[i];
-		const nt_texture *texture = &r->texture;
-		if (texture->made || texture->type == NT_IMAGE_OTHER)
+		if (r->texture.made || r->texture.type == NT_IMAGE_OTHER)
 			continue;
-		const uint64_t hash = nt_hash_bytes(0, &texture->sources[0], sizeof texture->sources[0]);
-		size_t at = NT_HASH_BEGIN;
-		while ((r->same = nt_hash_index_next(&files, hash, &at)) != UINT32_MAX)
-			if (t->results[r->same].texture.sources[0] == texture->sources[0])
-				break;
-		if (r->same == UINT32_MAX && !nt_hash_index_add(&files, hash, (uint32_t)i))
-			status = nt_fail_memory(error);
+		source *s = t->sources[r->texture.sources[0]->number];
+		if (s->result == UINT32_MAX)
+			s->result = (uint32_t)i;
+		r->same = s->result;
 	}
-	nt_hash_index_free(&files);
-	return status;
 }
 
 uint64_t nt_textures_pixels(const nt_textures *t, uint64_t *bytes)
@@ -584,7 +563,9 @@ nt_status nt_textures_make(nt_textures *t, const nt_texture_rules *rules, nt_err
 	nt_parallel_items(threads, t->result_count, make_result, t);
 	for (size_t i = 0; i < t->result_count && !status; i++)
 		status = fatal(&t->results[i].error, error);
-	return status ? status : join_results(t, error);
+	if (!status)
+		join_results(t);
+	return status;
 }
 
 size_t nt_textures_requests(const nt_textures *t)
@@ -604,8 +585,7 @@ const nt_texture *nt_textures_at(const nt_textures *t, size_t number)
 
 size_t nt_textures_result(const nt_textures *t, uint32_t number)
 {
-	const uint32_t own = t->requests[number].result, same = t->results[own].same;
-	return same != UINT32_MAX ? same : own;
+	return t->results[t->requests[number].result].same;
 }
 
 const nt_texture *nt_textures_of(const nt_textures *t, uint32_t number)

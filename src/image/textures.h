@@ -100,8 +100,9 @@ typedef struct nt_converted {
 	unsigned damaged;     /* bits: channels whose image cannot be decoded, which are white */
 } nt_converted;
 
-bool nt_conversion_equal(const nt_conversion *a, const nt_conversion *b);
-uint64_t nt_conversion_hash(const nt_conversion *how);
+/* All of it that makes a difference: equal conversions have equal keys. */
+enum { NT_CONVERSION_KEY = 6 + 4 * 7 };
+void nt_conversion_key(const nt_conversion *how, double key[NT_CONVERSION_KEY]);
 
 /* Whether it takes decoding at all. */
 bool nt_conversion_decodes(const nt_conversion *how);
@@ -171,6 +172,7 @@ typedef struct nt_texture_rules {
 
 /* A file that was requested. */
 typedef struct nt_texture_source {
+	uint32_t number;      /* of all that were requested, from 0 */
 	const char *path;     /* absolute: the file, or where it would be */
 	nt_image_found found;
 	const char *obstacle; /* why a file that is there counts as missing; NULL: it does not */
