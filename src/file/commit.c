@@ -129,12 +129,9 @@ static nt_status place_main(const nt_output *output, nt_sink *sink, nt_error *er
 static nt_status place_all(nt_output *output, nt_error *error)
 {
 	nt_status status = NT_OK;
-	for (nt_sink *sink = output->first; sink && !status; sink = sink->next) {
+	for (nt_sink *sink = output->first; sink && !status; sink = sink->next)
 		if (nt_sink_is_sidecar(sink))
 			status = place_sidecar(output, sink, error);
-		else if (sink != output->main && sink != output->staging)
-			status = place_main(output, sink, error);
-	}
 	if (!status)
 		status = sync_step(output, error);
 	nt_sink *first = output->staging ? output->staging : output->main;
@@ -155,9 +152,6 @@ static nt_status place_all(nt_output *output, nt_error *error)
 static bool link_stable(const nt_sink *sink)
 {
 	nt_temporary *second;
-	struct stat here, there;
-	if (stat(sink->staging, &here) == 0 && lstat(sink->target, &there) == 0 && nt_same_file(&here, &there))
-		return true; /* of a run that was killed after this step; rename would do nothing */
 	if (!nt_temporary_link(sink->staging, sink->target, &second))
 		return false;
 	const bool renamed = nt_temporary_rename(second, sink->target, true);
@@ -200,18 +194,15 @@ static nt_status settle_names(nt_output *output, nt_error *error)
 
 /* ---- one after the other ---- */
 
-/* Waits until no other set is being placed in the folder: a lock of the folder, which ends with its process. Below 0:
+/* Waits until no other set is being placed in the folder: a lock of the folder, which ends with its descriptor. False:
  * the file system has none. */
-static int lock_folder(const nt_output *output)
+static bool lock_folder(int fd)
 {
-	const int fd = open_folder(output->main->path);
-	int result = -1;
+	int result;
 	do
-		result = fd < 0 ? -1 : flock(fd, LOCK_EX);
-	while (result != 0 && fd >= 0 && errno == EINTR);
-	if (result != 0 && fd >= 0)
-		close(fd);
-	return result == 0 ? fd : -1;
+		result = flock(fd, LOCK_EX);
+	while (result != 0 && errno == EINTR);
+	return result == 0;
 }
 
 /* By the main file that was there the names of sidecars were chosen. */
@@ -228,7 +219,8 @@ nt_status nt_output_place(nt_output *output, nt_error *error)
 	while (sidecar && !nt_sink_is_sidecar(sidecar))
 		sidecar = sidecar->next;
 	const bool alone = sidecar && output->main && output->main->target;
-	const int lock = alone ? lock_folder(output) : -1;
+	const int folder = alone ? open_folder(output->main->path) : -1;
+	const bool locked = lock_folder(folder);
 	nt_temporaries_hold(&before);
 	nt_status status = NT_OK;
 	const nt_sink *main = output->main && output->main->temporary && !output->main->stays ? output->main : NULL;
@@ -245,10 +237,10 @@ nt_status nt_output_place(nt_output *output, nt_error *error)
 		status = settle_names(output, error);
 	else if (!status)
 		nt_output_remove_superseded(output);
-	if (!status && lock >= 0 && !output->main->in_place && output->options.find_ownership)
+	if (!status && locked && !output->main->in_place && output->options.find_ownership)
 		nt_output_remove_stale_staging(output);
 	nt_temporaries_release(&before);
-	if (lock >= 0)
-		close(lock);
+	if (folder >= 0)
+		close(folder);
 	return status;
 }

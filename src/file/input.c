@@ -20,6 +20,10 @@
 
 enum { FIRST_READ_BYTES = 64 * 1024 };
 
+#ifndef MADV_POPULATE_READ
+#define MADV_POPULATE_READ MADV_WILLNEED
+#endif
+
 static const unsigned char no_bytes[1]; /* where the data of an empty input points */
 
 /* Waits for bytes, or the end, of what may let a thread with a deadline wait. False: the deadline has passed. */
@@ -86,6 +90,30 @@ static bool map_all(nt_file *file, int fd, const char *path, const struct stat *
 	return true;
 }
 
+/* Maps or reads what has been opened, and has no end that is not known. */
+static nt_status take_bytes(nt_file *file, int fd, const char *path, bool standard, bool referred, nt_error *error)
+{
+	struct stat status;
+	if (fstat(fd, &status) != 0)
+		return nt_lookup_failed(path, errno, error);
+	if (referred && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode)) {
+		nt_trace_note(NT_TRACE_MISSING, path, NULL, NULL);
+		return nt_fail_file(error, NT_ERROR_MISSING, path, "cannot read: it is no regular file");
+	}
+	if (!standard) {
+		file->device = (uint64_t)status.st_dev;
+		file->inode = (uint64_t)status.st_ino;
+		nt_trace_note(NT_TRACE_READ, path, NULL, &status);
+	}
+	if (map_all(file, fd, path, &status))
+		return NT_OK;
+	if (S_ISDIR(status.st_mode))
+		return nt_lookup_failed(path, EISDIR, error);
+	if (!standard && !S_ISREG(status.st_mode) && !S_ISFIFO(status.st_mode) && !S_ISSOCK(status.st_mode))
+		return nt_fail_file(error, NT_ERROR_IO, path, "cannot read: it is a device");
+	return read_all(file, fd, path, error);
+}
+
 /* `referred`: by a document, which must not make the run wait for the writer of a pipe. Nor is a thread with a deadline
  * to wait for one: it opens the pipe first, and waits for bytes. */
 static nt_status open_file(nt_file *file, const char *path, bool referred, nt_error *error)
@@ -98,34 +126,14 @@ static nt_status open_file(nt_file *file, const char *path, bool referred, nt_er
 	do /* a file system over a network may be interrupted */
 		fd = standard ? fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 0) : open(path, flags);
 	while (fd < 0 && errno == EINTR);
-	struct stat status;
-	if (fd < 0 || fstat(fd, &status) != 0) {
-		const int number = errno;
-		if (fd >= 0)
-			close(fd);
-		return nt_lookup_failed(path, number, error);
-	}
-	if (referred && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode)) {
-		close(fd);
-		nt_trace_note(NT_TRACE_MISSING, path, NULL, NULL);
-		return nt_fail_file(error, NT_ERROR_MISSING, path, "cannot read: it is no regular file");
-	}
-	if (!standard) {
-		file->device = (uint64_t)status.st_dev;
-		file->inode = (uint64_t)status.st_ino;
-		nt_trace_note(NT_TRACE_READ, path, NULL, &status);
-	}
-	if (map_all(file, fd, path, &status))
-		return NT_OK;
+	if (fd < 0)
+		return nt_lookup_failed(path, errno, error);
 	if (!standard && !waits)
 		fcntl(fd, F_SETFL, 0);
-	const bool readable = standard || S_ISREG(status.st_mode) || S_ISFIFO(status.st_mode) ||
-		S_ISSOCK(status.st_mode);
-	const nt_status result = readable ? read_all(file, fd, path, error)
-		: S_ISDIR(status.st_mode) ? nt_lookup_failed(path, EISDIR, error)
-		: nt_fail_file(error, NT_ERROR_IO, path, "cannot read: it is a device");
-	close(fd);
-	return result;
+	const nt_status status = take_bytes(file, fd, path, standard, referred, error);
+	if (!file->mapped)
+		close(fd);
+	return status;
 }
 
 nt_status nt_file_open(nt_file *file, const char *path, nt_naming naming, nt_error *error)
@@ -183,11 +191,7 @@ static void advise(const nt_file *file, size_t offset, size_t size, int advice)
 /* Brings the pages of a range in at once, which costs less than a fault for every few of them. */
 static void fetch(const nt_file *file, size_t offset, size_t size)
 {
-#ifdef MADV_POPULATE_READ
 	advise(file, offset, size, MADV_POPULATE_READ);
-#else
-	advise(file, offset, size, MADV_WILLNEED);
-#endif
 }
 
 void nt_file_release(const nt_file *file, size_t offset, size_t size)

@@ -126,8 +126,9 @@ static int create_temporary(nt_output *output, nt_sink *sink, const char *beside
 	const nt_temporary *leader = main ? main->temporary : NULL;
 	struct stat info;
 	if (leader && lstat(main->path, &info) == 0 && S_ISLNK(info.st_mode)) {
-		if (!output->leader && nt_temporary_create(beside, 0600, NULL, &output->leader) < 0)
-			return -1;
+		/* without one it has a lock of its own */
+		if (!output->leader)
+			nt_temporary_create(beside, 0600, NULL, &output->leader);
 		leader = output->leader;
 	}
 	return nt_temporary_create(beside, sink->in_place ? 0600 : 0666, leader, &sink->temporary);
@@ -227,10 +228,6 @@ static nt_status open_main(nt_output *output, nt_sink *sink, nt_error *error)
 	free(real);
 	if (!sink->target || (exists && !real))
 		return nt_sink_fail(error, sink->path, sink->target ? number : ENOMEM);
-	for (const nt_sink *other = output->first; other; other = other->next)
-		if (!nt_sink_is_sidecar(other) && other->target && strcmp(other->target, sink->target) == 0)
-			return nt_fail_file(error, NT_ERROR_IO, sink->path,
-				"refusing to write: another file of this output has the same name");
 	return sink->dry ? NT_OK : open_temporary(output, sink, sink->target, error);
 }
 
@@ -266,7 +263,7 @@ static void append_sink(nt_output *output, nt_sink *sink)
 	else
 		output->first = sink;
 	output->last = sink;
-	if (sink->role == NT_ROLE_MAIN && !output->main)
+	if (sink->role == NT_ROLE_MAIN)
 		output->main = sink;
 	if (sink->role == NT_ROLE_STAGING)
 		output->staging = sink;

@@ -22,8 +22,8 @@ typedef struct nt_output nt_output;
 typedef struct nt_sink nt_sink;
 
 typedef enum nt_role {
-	NT_ROLE_MAIN,    /* named by the user. Further ones stand for themselves and are placed before the first */
-	NT_ROLE_STAGING, /* the first main file once more, with the staging names of sidecars */
+	NT_ROLE_MAIN,    /* named by the user; a set has one */
+	NT_ROLE_STAGING, /* the main file once more, with the staging names of sidecars */
 	NT_ROLE_BUFFER,  /* a sidecar of this main file: it may replace one that an earlier run made for it */
 	NT_ROLE_IMAGE    /* a sidecar that other documents may share: never replaced, never removed */
 } nt_role;
@@ -77,9 +77,9 @@ nt_status nt_output_check_in_place(const nt_output_options *options, const char 
 /*
  * Adds a file to the set; "-" is standard output. The sink belongs to the set.
  *
- * A main file is refused where its path is a directory, a symbolic link that leads nowhere, a protected file, a
- * main file of this set or, with no_clobber, an existing file; in place also one that is read-only or has further
- * hard links. A missing folder is refused for any role. Sidecars come after their main file.
+ * A main file is refused where its path is a directory, a symbolic link that leads nowhere, a protected file or, with
+ * no_clobber, an existing file; in place also one that is read-only or has further hard links. A missing folder is
+ * refused for any role. Sidecars come after their main file.
  */
 nt_status nt_output_add(nt_output *output, const char *path, nt_role role, nt_sink **sink, nt_error *error);
 

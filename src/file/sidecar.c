@@ -29,8 +29,8 @@
 #include "base/memory.h"
 #include "file/input.h"
 
-/* A name's length in any file system; the digits of a digest that a name has; names that are tried. */
-enum { MOST_NAME_BYTES = 255, NAME_ROOM = 1024, NAME_DIGITS = 16, MOST_NUMBERS = 1000 };
+/* A name's length in any file system; the digits of a digest that a name has. */
+enum { MOST_NAME_BYTES = 255, NAME_ROOM = 1024, NAME_DIGITS = 16 };
 
 static const char of_content[] = "-", for_the_time_being[] = ".new-";
 
@@ -60,8 +60,8 @@ bool nt_output_is_protected(const nt_output *output, const struct stat *status, 
 
 /* ---- names ---- */
 
-/* "STEM" + infix + the digest's first digits + "-number" + ".ENDING"; a long stem is cut between characters. A name
- * that is too long for that as it is gives itself, and is refused by the system. */
+/* "STEM" + infix + the digest's first digits + "-number" + ".ENDING"; a long stem is cut between characters. The system
+ * refuses a name that is too long all the same. */
 static void make_name(char made[NAME_ROOM], const char *name, const char *infix, const char *digest, unsigned number)
 {
 	char inserted[48];
@@ -76,10 +76,7 @@ static void make_name(char made[NAME_ROOM], const char *name, const char *infix,
 		while (stem > 1 && ((unsigned char)name[stem] & 0xC0) == 0x80)
 			stem--;
 	}
-	if (stem + others < NAME_ROOM)
-		snprintf(made, NAME_ROOM, "%.*s%s%s", (int)stem, name, inserted, ending);
-	else
-		snprintf(made, NAME_ROOM, "%s", name);
+	snprintf(made, NAME_ROOM, "%.*s%s%s", (int)stem, name, inserted, ending);
 }
 
 static void append_name(nt_buffer *text, const char *name, const char *infix, const char *digest, unsigned number)
@@ -324,9 +321,7 @@ void nt_output_remove_stale_staging(const nt_output *output)
 	const size_t length = nt_folder_length(output->main->path);
 	nt_buffer_append(&folder, length ? output->main->path : "./", length ? length : 2);
 	pthread_mutex_lock(&lock);
-	if (folder.failed || stat(folder.data, &status) != 0)
-		status = listed;
-	if (!nt_same_file(&status, &listed)) {
+	if (!folder.failed && stat(folder.data, &status) == 0 && !nt_same_file(&status, &listed)) {
 		nt_buffer_free(&names);
 		listed = status;
 		list_folder(folder.data, true, &names);
@@ -392,14 +387,12 @@ static nt_status find_name(nt_output *output, nt_sink *sink, const char *infix, 
 	nt_buffer text = {0};
 	nt_status status = NT_OK;
 	verdict found = OTHER;
-	for (unsigned number = 0; !status && found == OTHER && number < MOST_NUMBERS; number++) {
+	for (unsigned number = 0; !status && found == OTHER; number++) {
 		text.size = 0;
 		nt_path_beside(&text, sink->path, "");
 		append_name(&text, nt_last_part(sink->path), infix, sink->text, number);
 		status = text.failed ? nt_fail_memory(error) : look(output, sink, text.data, &found, state, error);
 	}
-	if (!status && found == OTHER)
-		status = nt_sink_fail(error, sink->path, EEXIST);
 	sink->stays = found == EQUAL;
 	*path = status ? NULL : keep(output, text.data);
 	nt_buffer_free(&text);

@@ -21,7 +21,7 @@
 /* Ranges of a file that are read once more, and files that get their room at once: that is a system call of 30 us. */
 enum { COPIED_BYTES = 2 * 1024 * 1024, LARGE_FILE_BYTES = 1024 * 1024 };
 
-/* Writes of this size go straight through, without the buffer. */
+/* Writes of this size go straight through, behind what is in the buffer; so do those for which it has no room. */
 enum { STRAIGHT_BYTES = 128 * 1024 };
 
 nt_status nt_sink_fail(nt_error *error, const char *path, int number)
@@ -98,13 +98,8 @@ nt_status nt_sink_write(nt_sink *sink, const void *bytes, size_t size, nt_error 
 	sink->size += size;
 	if (sink->dry)
 		return NT_OK;
-	if (size >= STRAIGHT_BYTES)
+	if (size >= STRAIGHT_BYTES || size > NT_SINK_BUFFER_BYTES - sink->used)
 		return flush_with(sink, bytes, size, error);
-	if (size > NT_SINK_BUFFER_BYTES - sink->used) {
-		const nt_status status = nt_sink_flush(sink, error);
-		if (status)
-			return status;
-	}
 	if (size)
 		memcpy(sink->buffer + sink->used, bytes, size);
 	sink->used += size;
@@ -138,7 +133,7 @@ nt_status nt_sink_copy(nt_sink *sink, const nt_file *from, size_t offset, size_t
 	nt_status status = nt_sink_flush(sink, error);
 	for (size_t left = size; left && !status;) {
 		const size_t part = left < NT_SINK_BUFFER_BYTES ? left : NT_SINK_BUFFER_BYTES;
-		const ssize_t count = from->fd < 0 ? -1 : pread(from->fd, sink->buffer, part, (off_t)offset);
+		const ssize_t count = pread(from->fd, sink->buffer, part, (off_t)offset);
 		if (count <= 0)
 			return nt_sink_write(sink, from->data + offset, left, error);
 		if (sink->digest)

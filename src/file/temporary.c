@@ -191,24 +191,19 @@ static folder *open_folder(const char *path)
 	char text[PATH_MAX];
 	struct stat status;
 	const int fd = open(nt_folder_of(path, text), O_PATH | O_DIRECTORY | O_CLOEXEC);
-	if (fd < 0 || fstat(fd, &status) != 0) {
-		if (fd >= 0)
-			close(fd);
+	if (fd < 0)
 		return NULL;
+	const bool is_known = fstat(fd, &status) == 0;
+	folder *opened = is_known ? folders : NULL;
+	while (opened && !nt_same_id(opened->id, nt_file_id_of(&status)))
+		opened = opened->next;
+	if (opened) {
+		opened->files++;
+	} else if (is_known && (opened = malloc(sizeof *opened))) {
+		*opened = (folder){folders, fd, 1, nt_file_id_of(&status)};
+		return folders = opened;
 	}
-	for (folder *known = folders; known; known = known->next)
-		if (nt_same_id(known->id, nt_file_id_of(&status))) {
-			close(fd);
-			known->files++;
-			return known;
-		}
-	folder *opened = malloc(sizeof *opened);
-	if (!opened) {
-		close(fd);
-		return NULL;
-	}
-	*opened = (folder){folders, fd, 1, nt_file_id_of(&status)};
-	folders = opened;
+	close(fd);
 	return opened;
 #endif
 }
@@ -252,13 +247,10 @@ static bool open_locked(nt_temporary *entry, const char *from, unsigned mode)
 		return false;
 	/* where there are no locks, nobody takes the file for stale; `from` is this run's mostly, which has its lock */
 	const bool refused = flock(entry->fd, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
-	const bool known = !from && !refused && fstat(entry->fd, &status) == 0;
-	if (from ? linkat(at, from, at, entry->name, 0) == 0 : known && status.st_nlink > 0)
+	if (from ? linkat(at, from, at, entry->name, 0) == 0
+		 : !refused && fstat(entry->fd, &status) == 0 && status.st_nlink > 0)
 		return true;
 	const int number = from ? errno : EEXIST;
-	/* nobody else removes a file that is locked here */
-	if (!from && !refused && !known)
-		unlinkat(at, entry->name, 0);
 	close(entry->fd);
 	errno = number;
 	return false;
@@ -442,9 +434,8 @@ static bool is_local(int at)
 	static const uint32_t known[] = {0xEF53 /* ext2 to ext4 */, 0x58465342 /* XFS */, 0x9123683E /* Btrfs */,
 		0x01021994 /* tmpfs */, 0xF2F52010 /* F2FS */, 0x2FC12FC1 /* ZFS */, 0x4D44 /* FAT */,
 		0x2011BAB0 /* exFAT */, 0x5346544E /* NTFS */, 0x7366746E /* NTFS3 */};
-	struct statfs status;
-	if (fstatfs(at, &status) != 0)
-		return false;
+	struct statfs status = {0};
+	fstatfs(at, &status);
 	for (size_t i = 0; i < sizeof known / sizeof *known; i++)
 		if ((uint32_t)status.f_type == known[i])
 			return true;
@@ -527,6 +518,7 @@ static void remove_and_end(int signal_number)
 	signal(signal_number, SIG_DFL);
 	raise(signal_number);
 	pthread_sigmask(SIG_UNBLOCK, &only, NULL);
+	/* the first process of a container has no defaults */
 	_exit(128 + signal_number);
 }
 

@@ -196,20 +196,17 @@ static void free_file(nt_trace_file *file)
 
 static bool add(nt_trace *trace, uint64_t hash, const nt_trace_file *file)
 {
-	if (!nt_grow((void **)&trace->files, &trace->capacity, trace->count + 1, sizeof *trace->files) ||
-		!nt_hash_index_add(&trace->index, hash, (uint32_t)trace->count))
-		return false;
-	nt_trace_file *added = &trace->files[trace->count];
-	*added = *file;
-	added->path = strdup(file->path);
-	added->found = file->found ? strdup(file->found) : NULL;
-	if (added->path && (added->found || !file->found)) {
-		trace->count++;
-		return true;
-	}
-	/* the index has a number that nothing stands behind */
-	free_file(added);
-	return false;
+	nt_trace_file added = *file;
+	added.path = strdup(file->path);
+	added.found = file->found ? strdup(file->found) : NULL;
+	const bool made = added.path && (added.found || !file->found) &&
+		nt_grow((void **)&trace->files, &trace->capacity, trace->count + 1, sizeof added) &&
+		nt_hash_index_add(&trace->index, hash, (uint32_t)trace->count);
+	if (made)
+		trace->files[trace->count++] = added;
+	else
+		free_file(&added);
+	return made;
 }
 
 void nt_trace_note(nt_trace_kind kind, const char *path, const char *found, const struct stat *info)

@@ -193,6 +193,12 @@ grid_obj 120 >grid.obj
 is "$(cat code)" 2
 says "Broken pipe"
 
+# one that takes some bytes at a time gets them all
+run -q grid.obj direct.glb
+{ command python3 -c 'import fcntl, os; fcntl.fcntl(1, fcntl.F_SETFL, os.O_NONBLOCK)' && "$NMTAN" -q grid.obj -; } |
+	{ sleep 0.1 && cat; } >piped.glb
+same piped.glb direct.glb
+
 scene "the null device takes everything"
 run --output-format=glb "$data/head.obj" /dev/null
 exits 0
@@ -282,6 +288,18 @@ for delay in 0.01 0.02 0.05 0.08 0.11 0.15 0.2 0.3; do
 	done
 done
 [ $ended -gt 0 ] || wrong "no run lasted long enough to be ended"
+
+scene "signals end the first process of a container, too, for which the system has no default"
+if unshare -r -p -f true 2>/dev/null; then
+	mkfifo pipe.obj
+	unshare -r -p -f "$NMTAN" -q pipe.obj out.glb 2>/dev/null &
+	exec 9>pipe.obj
+	kill -TERM "$(pgrep -P $!)"
+	exec 9>&-
+	wait $!
+	is $? 143
+	only pipe.obj
+fi
 
 scene "a dry run writes nothing and says what it would do"
 cp "$data/quad.obj" .

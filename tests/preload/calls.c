@@ -3,7 +3,8 @@
  * Stands between a program and the calls by which it changes files (LD_PRELOAD). By environment:
  *
  *   NT_CALLS_KILL=N             SIGKILL in place of the N-th call, from 1 on
- *   NT_CALLS_FAIL=NAME:ERRNO    the calls of that name fail; with :N behind, the N-th of them alone
+ *   NT_CALLS_FAIL=NAME:ERRNO    the calls of that name fail; with :N behind, the N-th of them alone; more follow a
+ *                               comma
  *   NT_CALLS_KEEP=NAME:NAME     files of these names, in whatever folder, get no other name and no other file gets
  *                               theirs: what the system says of files that are immutable, or of others in a sticky
  *                               folder
@@ -52,7 +53,9 @@ static bool enter(const char *name)
 	if (kill_at && strtoul(kill_at, NULL, 10) == calls)
 		kill(getpid(), SIGKILL);
 	const size_t length = strlen(name);
-	if (!fail || strncmp(fail, name, length) != 0 || fail[length] != ':')
+	for (fail = fail ? fail : ""; *fail && (strncmp(fail, name, length) != 0 || fail[length] != ':');)
+		fail += strcspn(fail, ",") + (strchr(fail, ',') != NULL);
+	if (!*fail)
 		return true;
 	char *end;
 	const long number = strtol(fail + length + 1, &end, 10);

@@ -2,6 +2,7 @@
 /*
  * Inputs, in a folder of our own that is removed afterwards.
  */
+#include "fail_alloc.h"
 #include "file/input.h"
 #include "folder.h"
 #include "test.h"
@@ -86,33 +87,70 @@ TEST(input_empty_is_no_error)
 	nt_file_close(&file);
 }
 
-TEST(input_missing_or_a_folder_is_named)
+/* The error names it, and nothing of it stays open. */
+TEST(input_that_cannot_be_read_is_named)
 {
-	nt_error error;
-	nt_file file;
-	assert_int_equal(nt_file_open(&file, in_folder("missing"), NT_NAMED_BY_USER, &error), NT_ERROR_MISSING);
-	assert_string_equal(error.message, "no such file");
-	assert_string_equal(error.place.file, in_folder("missing"));
-	nt_file_close(&file);
-	assert_int_equal(nt_file_open(&file, in_folder(""), NT_NAMED_BY_USER, &error), NT_ERROR_MISSING);
-	assert_string_equal(error.message, "cannot read: Is a directory");
-	nt_file_close(&file);
+	static const struct {
+		const char *name; /* in our folder, or absolute */
+		nt_naming naming;
+		nt_status status;
+		const char *message;
+	} rows[] = {
+		{"missing", NT_NAMED_BY_USER, NT_ERROR_MISSING, "no such file"},
+		{"plain/a", NT_NAMED_BY_USER, NT_ERROR_MISSING, "no such file: Not a directory"},
+		{"", NT_NAMED_BY_USER, NT_ERROR_MISSING, "cannot read: Is a directory"},
+		{"", NT_NAMED_BY_DOCUMENT, NT_ERROR_MISSING, "cannot read: Is a directory"},
+		{"loop", NT_NAMED_BY_USER, NT_ERROR_IO, "cannot read: Too many levels of symbolic links"},
+		{"/proc/self/mem", NT_NAMED_BY_USER, NT_ERROR_IO, "cannot read: Input/output error"},
+		{"/dev/full", NT_NAMED_BY_USER, NT_ERROR_IO, "cannot read: it is a device"},
+		{"/dev/full", NT_NAMED_BY_DOCUMENT, NT_ERROR_MISSING, "cannot read: it is no regular file"},
+		{"pointer", NT_NAMED_BY_USER, NT_ERROR_MISSING,
+			"Git LFS's pointer to the file, not the file itself: git lfs pull brings it"},
+		{"pointer", NT_NAMED_BY_US, NT_OK, NULL},
+		{"secret", NT_NAMED_BY_USER, NT_ERROR_IO, "cannot read: Permission denied"},
+	};
+	const int lowest = dup(STDIN_FILENO);
+	close(lowest);
+	put_text_file("plain", "");
+	put_text_file("secret", "secret");
+	put_text_file("pointer", "version https://git-lfs.github.com/spec/v1\n");
+	assert_int_equal(symlink("loop", in_folder("loop")), 0);
+	assert_int_equal(chmod(in_folder("secret"), 0), 0);
+	/* root reads everything */
+	for (size_t i = 0; i < sizeof rows / sizeof *rows - (geteuid() == 0); i++) {
+		const char *path = rows[i].name[0] == '/' ? rows[i].name : in_folder(rows[i].name);
+		nt_error error;
+		nt_file file;
+		assert_int_equal(nt_file_open(&file, path, rows[i].naming, &error), rows[i].status);
+		if (rows[i].message) {
+			assert_string_equal(error.message, rows[i].message);
+			assert_string_equal(error.place.file, path);
+		}
+		nt_file_close(&file);
+		assert_int_equal(dup(STDIN_FILENO), lowest);
+		close(lowest);
+	}
 }
 
-TEST(input_without_permission_is_named)
+/* Files of the system have a size of 0, or one that nobody can map, and a text. */
+TEST(input_that_cannot_be_mapped_is_read)
 {
-	put_text_file("a", "secret");
-	assert_int_equal(chmod(in_folder("a"), 0), 0);
-	nt_error error;
-	nt_file file;
-	const nt_status status = nt_file_open(&file, in_folder("a"), NT_NAMED_BY_USER, &error);
-	if (geteuid() == 0) { /* root reads everything */
-		assert_int_equal(status, NT_OK);
-	} else {
-		assert_int_equal(status, NT_ERROR_IO);
-		assert_string_equal(error.message, "cannot read: Permission denied");
+	static const char *const paths[] = {"/proc/self/cmdline", "/sys/kernel/mm/transparent_hugepage/enabled"};
+	for (size_t i = 0; i < sizeof paths / sizeof *paths; i++) {
+		nt_error error;
+		nt_file file;
+		if (access(paths[i], R_OK) != 0)
+			continue;
+		assert_int_equal(nt_file_open(&file, paths[i], NT_NAMED_BY_USER, &error), NT_OK);
+		assert_false(file.mapped);
+		assert_in_range(file.size, 1, 4000);
+		nt_file_close(&file);
+		fail_allocations_from(0);
+		const nt_status status = nt_file_open(&file, paths[i], NT_NAMED_BY_USER, &error);
+		assert_true(stop_failing_allocations());
+		assert_int_equal(status, NT_ERROR_MEMORY);
+		assert_string_equal(error.place.file, paths[i]);
 	}
-	nt_file_close(&file);
 }
 
 TEST(input_pipe_is_read_to_its_end)

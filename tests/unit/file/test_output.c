@@ -166,13 +166,22 @@ TEST(output_bytes_are_the_same_for_small_and_large_writes)
 	/* and copies of it; what was let go of is read again */
 	output = start(NULL);
 	sink = add(output, in_folder("copy"), NT_ROLE_MAIN);
+	nt_sink *second = add(output, in_folder("second"), NT_ROLE_BUFFER);
+	assert_int_equal(nt_sink_copy(second, &file, 0, LARGE, &error), NT_OK);
+	assert_int_equal(nt_output_settle(output, second, &error), NT_OK);
+	char digest[NT_DIGEST_TEXT];
 	assert_int_equal(nt_sink_write(sink, "head", 4, &error), NT_OK);
 	assert_int_equal(nt_sink_copy(sink, &file, 1, LARGE, &error), NT_OK);
 	assert_int_equal(nt_sink_copy(sink, &file, 1 + LARGE, 100, &error), NT_OK);
 	assert_int_equal(nt_sink_copy(sink, &file, 0, 0, &error), NT_OK);
 	assert_int_equal(nt_sink_copy(sink, &file, SIZE - 1, 2, &error), NT_ERROR_INTERNAL);
-	assert_int_equal(nt_output_size(output), LARGE + 104);
+	assert_int_equal(nt_output_size(output), 2 * LARGE + 104);
+	assert_int_equal(nt_output_copied(output), 2 * LARGE + 100);
+	snprintf(digest, sizeof digest, "%s", nt_sink_digest(second));
 	assert_int_equal(nt_output_commit(output, &error), NT_OK);
+	char there[NT_DIGEST_TEXT];
+	assert_int_equal(nt_digest_of_file(in_folder("second"), there, &error), NT_OK);
+	assert_string_equal(there, digest);
 	nt_file copy;
 	assert_int_equal(nt_file_open(&copy, in_folder("copy"), NT_NAMED_BY_USER, &error), NT_OK);
 	assert_int_equal(copy.size, LARGE + 104);
@@ -193,7 +202,7 @@ TEST(output_bytes_are_the_same_for_small_and_large_writes)
 	signal(SIGXFSZ, SIG_DFL);
 	assert_string_equal(error.message, "cannot write: File too large");
 	nt_output_abort(output);
-	assert_int_equal(count_in_folder(), 2);
+	assert_int_equal(count_in_folder(), 3);
 	nt_file_close(&file);
 	free(bytes);
 }

@@ -88,6 +88,19 @@ TEST(folder_of_a_name_may_be_missing_but_not_below_a_file)
 	assert_int_equal(taken(&text)[0], '/');
 }
 
+TEST(folders_are_named_without_their_slash)
+{
+	static const char *const rows[][2] = {{"x", "."}, {"/x", "/"}, {"a/b/c", "a/b"}, {"/a/", "/a"}, {"", "."}};
+	static char longest[PATH_MAX + 2];
+	char folder[PATH_MAX];
+	for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
+		assert_string_equal(nt_folder_of(rows[i][0], folder), rows[i][1]);
+	memset(longest, 'a', PATH_MAX);
+	longest[PATH_MAX - 1] = '/';
+	assert_string_equal(nt_folder_of(longest, folder), "");
+	assert_int_equal(strlen(nt_folder_of(longest + 1, folder)), PATH_MAX - 2);
+}
+
 TEST(absolute_paths_are_of_this_system)
 {
 	nt_buffer text = {0};

@@ -13,9 +13,12 @@
 
 #define SOMEBODY "da44bf30a9ce9c985c29cf2b20168f87"
 
+static unsigned asked; /* how often for what is ours */
+
 static nt_status own_old(nt_output *output, const char *path, nt_error *error)
 {
 	(void)path;
+	asked++;
 	return nt_output_add_ownership(output, "a.bin", SOMEBODY, NULL, error);
 }
 
@@ -98,19 +101,74 @@ TEST(another_file_stays_and_the_name_is_of_the_bytes)
 TEST(a_long_name_is_cut_between_characters)
 {
 	char name[256], path[512];
-	/* 125 letters of two bytes and an ending make 254 */
-	for (int i = 0; i < 125; i++)
-		memcpy(name + 2 * i, "\xC3\xA9", 2);
-	strcpy(name + 250, ".bin");
+	/* a letter, 124 of two bytes and an ending make 253 */
+	name[0] = 'a';
+	for (int i = 0; i < 124; i++)
+		memcpy(name + 1 + 2 * i, "\xC3\xA9", 2);
+	strcpy(name + 249, ".bin");
 	put_text_file(name, "theirs");
 	nt_sink *main;
 	nt_output *output = start(NULL, &main);
 	snprintf(path, sizeof path, "%s", nt_sink_name(sidecar(output, name, NT_ROLE_BUFFER, "somebody\n"), false));
 	nt_output_abort(output);
-	/* 255 - 4 - 17 = 234 bytes are 117 letters */
-	assert_int_equal(strlen(path), 234 + 17 + 4);
-	assert_memory_equal(path, name, 234);
-	assert_string_equal(path + 234, "-" "da44bf30a9ce9c98" ".bin");
+	/* 255 - 4 - 17 = 234 bytes have a letter, 116 of two bytes and half of one */
+	assert_int_equal(strlen(path), 233 + 17 + 4);
+	assert_memory_equal(path, name, 233);
+	assert_string_equal(path + 233, "-" "da44bf30a9ce9c98" ".bin");
+	/* an ending of 241 bytes leaves no room */
+	nt_sink *sink;
+	nt_error error;
+	memset(name, 'x', 242);
+	strcpy(name + 242, "");
+	name[1] = '.';
+	put_text_file(name, "theirs");
+	output = start(NULL, &main);
+	assert_int_equal(nt_output_add(output, in_folder(name), NT_ROLE_BUFFER, &sink, &error), NT_OK);
+	assert_int_equal(nt_output_settle(output, sink, &error), NT_ERROR_IO);
+	assert_string_equal(error.message, "cannot write: File name too long");
+	nt_output_abort(output);
+}
+
+TEST(images_of_one_set_share_a_name_if_they_are_equal)
+{
+	static const char *const names[] = {"n.png", "n-" "da44bf30a9ce9c98" ".png"};
+	for (int theirs = 0; theirs < 2; theirs++) {
+		nt_error error;
+		nt_sink *main;
+		nt_output_result result = {0};
+		nt_output *output = start(&(nt_output_options){.result = &result}, &main);
+		if (theirs)
+			put_text_file("n.png", "theirs");
+		for (int i = 0; i < 2; i++)
+			assert_string_equal(nt_sink_name(sidecar(output, "n.png", NT_ROLE_IMAGE, "somebody\n"), false),
+				names[theirs]);
+		assert_string_not_equal(nt_sink_name(sidecar(output, "n.png", NT_ROLE_IMAGE, "other"), false),
+			names[theirs]);
+		assert_int_equal(nt_output_commit(output, &error), NT_OK);
+		assert_int_equal(access(in_folder(names[theirs]), F_OK), 0);
+		assert_int_equal(count_in_folder(), 3 + theirs);
+		nt_buffer_free(&result.note);
+		remove_folder(NULL);
+		make_folder(NULL);
+	}
+}
+
+TEST(names_that_were_taken_are_said_up_to_three)
+{
+	nt_error error;
+	nt_sink *main;
+	nt_output_result result = {0};
+	nt_output *output = start(&(nt_output_options){.result = &result}, &main);
+	for (int i = 0; i < 5; i++) {
+		const char name[] = {(char)('a' + i), '\0'};
+		put_text_file(name, "theirs");
+		sidecar(output, name, NT_ROLE_IMAGE, "somebody\n");
+	}
+	assert_int_equal(nt_output_commit(output, &error), NT_OK);
+	assert_string_equal(result.note.data, "; a is another file, so ours is a-" "da44bf30a9ce9c98"
+		"; b is another file, so ours is b-" "da44bf30a9ce9c98"
+		"; c is another file, so ours is c-" "da44bf30a9ce9c98" "; 2 more names were taken");
+	nt_buffer_free(&result.note);
 }
 
 TEST(a_file_of_ours_is_replaced_by_way_of_a_staging_name)
@@ -122,7 +180,10 @@ TEST(a_file_of_ours_is_replaced_by_way_of_a_staging_name)
 		put_text_file("a.gltf", "old");
 		put_text_file("a.bin", "somebody\n");
 		nt_output *output = start(&options, &main);
+		asked = 0;
 		nt_sink *sink = sidecar(output, "a.bin", NT_ROLE_BUFFER, "new");
+		sidecar(output, "a.bin", NT_ROLE_BUFFER, "newer");
+		assert_int_equal(asked, 1 - i); /* it takes a look into the main file */
 		assert_true(nt_output_has_staging(output));
 		assert_string_equal(nt_sink_name(sink, false), "a.bin");
 		assert_memory_equal(nt_sink_name(sink, true), "a.new-", 6);
@@ -196,8 +257,13 @@ TEST(every_failed_allocation_is_said)
 		nt_error error;
 		put_text_file("a.bin", n % 2 ? "somebody\n" : "theirs");
 		nt_output *output = start(&options, &main);
+		nt_trace trace = {0};
 		fail_allocations_from(n);
-		nt_status status = nt_output_add(output, in_folder("a.bin"), NT_ROLE_BUFFER, &sink, &error);
+		nt_trace_use(&trace);
+		nt_trace_note(NT_TRACE_LINK, "link", "path", NULL);
+		nt_trace_use(NULL);
+		nt_status status = trace.failed ? NT_ERROR_MEMORY
+			: nt_output_add(output, in_folder("a.bin"), NT_ROLE_BUFFER, &sink, &error);
 		if (!status)
 			status = nt_sink_write(sink, "new", 3, &error);
 		if (!status)
@@ -205,6 +271,8 @@ TEST(every_failed_allocation_is_said)
 		failed = stop_failing_allocations();
 		assert_int_equal(status, failed ? NT_ERROR_MEMORY : NT_OK);
 		nt_output_abort(output);
+		assert_int_equal(trace.count, !trace.failed);
+		nt_trace_free(&trace);
 		assert_int_equal(count_in_folder(), 2);
 	}
 }

@@ -75,10 +75,20 @@ static void *commit(void *unused)
 	return unused;
 }
 
+/* It never returns, and is waited for by nobody. */
+static void *commit_later(void *unused)
+{
+	sigset_t before;
+	usleep(50000);
+	nt_temporaries_hold(&before);
+	_exit(4);
+	return unused;
+}
+
 static void fault_beside_commit(void)
 {
-	pthread_t other;
-	if (pthread_create(&other, NULL, commit, NULL))
+	pthread_t other, late;
+	if (pthread_create(&other, NULL, commit, NULL) || pthread_create(&late, NULL, commit_later, NULL))
 		_exit(2);
 	while (!atomic_load(&holds))
 		usleep(100);

@@ -20,7 +20,7 @@ TEST(data_uris_of_any_kind_are_decoded)
 	check_data("data:;base64,AAECAw", "\0\1\2\3", 4);
 	check_data("DATA:image/png;x=y;BASE64,/+8=", "\xFF\xEF", 2);
 	check_data("data:application/gltf-buffer;base64,", "", 0);
-	check_data("data:text/plain,a%20b%", "a b%", 4);
+	check_data("data:text/plain,a%20b%4a%4G%g4%", "a bJ%4G%g4%", 11);
 	check_data("data:,", "", 0);
 }
 
