@@ -128,6 +128,8 @@ done <<'END'
 1|map_Pr m.tga;map_Pm x.tga|map_Pm ./x.tga;map_Pr ./m.tga;Pr 0.5
 1|norm orm.tga;map_Ke orm.tga|norm ./orm.tga
 1|map_Pr -mm 0 0.5 x.tga|map_Pr -mm -0 0.5 x.tga
+1|map_Pr -mm 0.5 0 x.tga|map_Pr -mm 0.5 -0 x.tga
+1|map_Bump -bm 0 10x.png|map_Bump -bm -0 10x.png
 2|map_Pr -mm 0 0.5 x.tga|map_Pr -mm 0.1 0.5 x.tga
 2|map_Pr -mm 0 0.5 x.tga|map_Pr -mm 0 0.25 x.tga
 2|map_Pr -imfchan r c.png|map_Pr -imfchan g c.png
@@ -178,7 +180,11 @@ images embedded quad.glb 0 first.png
 images write g.png 8 8 'abs(4 - x) * 16'
 convert "bump g.png"
 images embedded quad.glb 0 second.png
-is "$(images rows first.png)" "$(images rows second.png)"
+images write twice.png 8 8 'abs(4 - x) * 32'
+convert "bump -mm 0 0.5 twice.png"
+images embedded quad.glb 0 third.png
+same first.png second.png
+same first.png third.png
 
 scene "a check of the OBJ finds what its conversion finds"
 images write r.tga 4 4 '(x, x, x)'
@@ -209,9 +215,10 @@ done
 scene "an image that is used as a colour and as a normal map that stays is one image"
 images write n.png 16 16 '(128, 128, 255)'
 quad "map_Kd n.png" "norm n.png"
-run --flip-green=auto quad.obj quad.glb
-exits 0
-is "$(gltf quad.glb 'g.images.length')" 1
+for how in auto:1 on:2; do
+	run --flip-green=${how%:*} quad.obj quad.glb
+	is "$how $(gltf quad.glb 'g.images.length')" "$how ${how#*:}"
+done
 
 scene "a library of which no usemtl takes anything gives its first material"
 quad "Kd 1 0 0" "newmtl second" "Kd 0 1 0"

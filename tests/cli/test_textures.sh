@@ -22,11 +22,12 @@ is "$(images rows made.png)" "$(images rows twin.png)"
 scene "beside a .gltf what was converted is a file, also where other images are linked"
 images write n.tga 32 16 "$bumps"
 images write b.bmp 8 8 '(x * 9, y * 9, 3)'
-quad "norm n.tga" "map_Kd b.bmp"
+cp b.bmp .e # which is no ending
+quad "norm n.tga" "map_Kd b.bmp" "map_Ke .e"
 mkdir out
 run quad.obj out/quad.gltf
 exits 0
-says "; b.bmp became b.png, n.tga became n.png"
+says "; b.bmp became b.png, .e became .e.png, n.tga became n.png"
 is "$(ls out)" "b.png
 n.png
 quad.bin
@@ -138,6 +139,10 @@ exits 0
 says "IMAGE_DAMAGED"
 says "ends before its last pixel"
 is "$(gltf quad.glb 'g.images')" undefined
+printf 'version https://git-lfs.github.com/spec/v1\noid sha256:%064d\nsize 12345\n' 0 >lfs.png
+quad "norm lfs.png"
+run --images=link quad.obj quad.glb
+says "image cannot be read: lfs.png (Git LFS's pointer to the file, not the file itself: git lfs pull brings it)"
 
 scene "an image of absurd size is left out before it takes memory"
 printf '\0\0\2\0\0\0\0\0\0\0\0\0\377\377\377\377\30\40' >huge.tga
@@ -609,7 +614,7 @@ scene "green is turned in every depth, beside every channel"
 while IFS='|' read -r pixel turned; do
 	images write n.png 4 4 "$pixel"
 	quad 'norm n.png'
-	run --flip-green=on quad.obj quad.glb
+	run --bump=normal --flip-green=on quad.obj quad.glb
 	images embedded quad.glb 0 made.png
 	is "$(images rows made.png 'rows[1][2]')" "$turned"
 done <<'END'
@@ -617,6 +622,7 @@ done <<'END'
 (10 * x, 20 * y, 200, 255 - x)|[20, 235, 200, 253]
 ("16", 10 * x, 20 * y, 60000)|[20, 65515, 60000]
 ("16", 10 * x, 20 * y, 60000, 65535 - x)|[20, 65515, 60000, 65533]
+10 * x|[20]
 END
 
 # The upper half was made for DirectX: no turn is right for all of it.

@@ -91,6 +91,11 @@ TEST(nothing_is_told_by_weak_evidence)
 	const nt_normal_facts facts = facts_of(make(flat, 1, 8));
 	assert_int_equal(facts.green, NT_GREEN_UNKNOWN);
 	assert_true(facts.constant);
+	for (size_t i = 0; i < 2; i++) { /* one pixel is another one: the first, the last */
+		nt_pixels p = make(flat, 1, 8);
+		((uint8_t *)p.samples)[i * (3 * SIDE * SIDE - 1)]--;
+		assert_false(facts_of(p).constant);
+	}
 }
 
 /* Long waves, and grain upon them. */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Heights to normals, by theory: planes are exact, flat is (128, 128, 255).
+ * Heights to normals, by theory: planes are exact.
  */
 #include "image/image.h"
 
@@ -42,22 +42,6 @@ static void assert_slopes(const nt_pixels *normals, uint32_t x, uint32_t y, doub
 	const double length = sqrt(p * p + q * q + 1), n[] = {-p / length, q / length, 1 / length};
 	for (unsigned c = 0; c < 3; c++)
 		assert_int_equal(at(normals, x, y, c), floor((n[c] + 1) / 2 * ((1u << normals->bits) - 1) + 0.5));
-}
-
-TEST(flat_is_the_neutral_colour)
-{
-	nt_pixels heights = make(9, 7, 1, 8), wide = make(9, 7, 1, 16);
-	memset(heights.samples, 77, 63);
-	nt_pixels normals = convert(&heights, 0.5, false), wide_normals = convert(&wide, 0.5, true);
-	for (uint32_t i = 0; i < 63; i++) {
-		assert_int_equal(at(&normals, i % 9, i / 9, 0), 128);
-		assert_int_equal(at(&normals, i % 9, i / 9, 1), 128);
-		assert_int_equal(at(&normals, i % 9, i / 9, 2), 255);
-		assert_int_equal(at(&wide_normals, i % 9, i / 9, 1), 32768);
-		assert_int_equal(at(&wide_normals, i % 9, i / 9, 2), 65535);
-	}
-	nt_pixels_free(&normals);
-	nt_pixels_free(&wide_normals);
 }
 
 /* h = 3 x + 2 y of 255 (then of 65535), in an image of 40: s = 40 * height. */

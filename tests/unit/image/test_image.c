@@ -365,15 +365,36 @@ TEST(colours_that_a_palette_lacks_are_the_same_in_every_run)
 	}
 }
 
+/* One pixel of a grey column is another one; six levels are grey. */
 TEST(grey_is_told_by_pixels)
 {
-	for (size_t i = 0; i < FILE_COUNT; i++) {
-		bytes b;
-		nt_error error;
+	static const struct {
+		unsigned rgb[3], row;
 		bool grey;
-		files[i].make(&files[i], &b);
-		assert_int_equal(nt_image_is_grey(b.data, b.size, &grey, &error), NT_OK);
-		assert_int_equal(grey, files[i].flat || files[i].channels == 1);
+	} rows[] = {{{100, 106, 103}, 0, true}, {{100, 107, 103}, 0, false}, {{103, 100, 107}, 0, false},
+		{{100, 103, 107}, 0, false}, {{106, 100, 103}, 11, true}, {{107, 100, 103}, 11, false}};
+	for (size_t i = 0; i < 2 * sizeof rows / sizeof *rows; i++) {
+		enum { ROWS = 12 };
+		const unsigned bits = i % 2 ? 16 : 8;
+		const size_t at = 3 * rows[i / 2].row;
+		nt_pixels p;
+		nt_error error;
+		unsigned char *png;
+		size_t size;
+		bool grey;
+		assert_int_equal(nt_pixels_create(&p, 1, ROWS, 3, bits, &error), NT_OK);
+		memset(p.samples, 99, nt_pixels_row_bytes(&p) * ROWS);
+		for (size_t c = 0; c < 3; c++)
+			if (bits == 8)
+				((uint8_t *)p.samples)[at + c] = (uint8_t)rows[i / 2].rgb[c];
+			else
+				((uint16_t *)p.samples)[at + c] = (uint16_t)(257 * rows[i / 2].rgb[c]);
+		assert_int_equal(nt_pixels_are_grey(&p, 6), rows[i / 2].grey);
+		assert_int_equal(nt_encode_png(&p, &png, &size, &error), NT_OK);
+		assert_int_equal(nt_image_is_grey(png, size, &grey, &error), NT_OK);
+		assert_int_equal(grey, rows[i / 2].grey);
+		nt_pixels_free(&p);
+		free(png);
 	}
 }
 

@@ -27,7 +27,7 @@ static uint32_t request(nt_textures *textures, const char *name, nt_texture_kind
 	static char document[300];
 	snprintf(document, sizeof document, "%s", in_folder("m.mtl"));
 	const nt_image_places places = {.document = document};
-	const nt_texture_request what = {.kind = kind, .height = height,
+	const nt_texture_request what = {.kind = kind, .height = height, .clamp = height > 0.15,
 		.channels = {{.name = name, .map = {.channel = NT_CHANNEL_LUMINANCE, .gain = 1}}}};
 	uint32_t number;
 	nt_error error;
@@ -40,38 +40,40 @@ static const nt_texture *result(const nt_textures *textures, uint32_t number)
 	return nt_textures_at(textures, nt_textures_result(textures, number));
 }
 
-static nt_status make(nt_textures *textures, nt_error *error)
+static nt_status make(nt_textures *textures, bool judged_only, nt_error *error)
 {
-	const nt_texture_rules rules = {.threads = 2};
+	const nt_texture_rules rules = {.threads = 2, .judged_only = judged_only};
 	return nt_textures_make(textures, &rules, error);
 }
 
+/* A normal map is the same at any height, a height map is not, but when nobody takes its pixels. */
 TEST(equal_results_are_made_once)
 {
 	put_tga("grey.tga", 9, 9, 9);
 	put_tga("n.tga", 255, 128, 128);
-	nt_textures *t = nt_textures_create(NULL);
-	nt_error error;
-	/* a normal map is the same at any height, a height map is not */
-	const uint32_t n1 = request(t, "n.tga", NT_TEXTURE_NORMALS_OR_HEIGHTS, 0.1),
-		       n2 = request(t, "./n.tga", NT_TEXTURE_NORMALS_OR_HEIGHTS, 0.2),
-		       n3 = request(t, "n.tga", NT_TEXTURE_COLOR, 0),
-		       h1 = request(t, "grey.tga", NT_TEXTURE_NORMALS_OR_HEIGHTS, 0.1),
-		       h2 = request(t, "grey.tga", NT_TEXTURE_NORMALS_OR_HEIGHTS, 0.2),
-		       h3 = request(t, "grey.tga", NT_TEXTURE_HEIGHTS, 0.2),
-		       color = request(t, "grey.tga", NT_TEXTURE_COLOR, 0);
-	assert_int_equal(make(t, &error), NT_OK);
-	assert_ptr_equal(result(t, n1), result(t, n2));
-	assert_ptr_equal(result(t, n1), result(t, n3));
-	assert_ptr_not_equal(result(t, h1), result(t, h2));
-	assert_ptr_equal(result(t, h2), result(t, h3));
-	assert_int_equal(nt_textures_count(t), 4);
-	assert_true(result(t, h1)->from_heights);
-	assert_false(result(t, color)->from_heights);
-	assert_string_equal(result(t, h1)->name, "grey-normal.png");
-	assert_string_equal(result(t, color)->name, "grey.png");
-	assert_int_equal(result(t, n1)->type, NT_IMAGE_PNG);
-	nt_textures_free(t);
+	for (int judged = 0; judged < 2; judged++) {
+		nt_textures *t = nt_textures_create(NULL);
+		nt_error error;
+		const uint32_t n1 = request(t, "n.tga", NT_TEXTURE_NORMALS_OR_HEIGHTS, 0.1),
+			       n2 = request(t, "./n.tga", NT_TEXTURE_NORMALS_OR_HEIGHTS, 0.2),
+			       n3 = request(t, "n.tga", NT_TEXTURE_COLOR, 0),
+			       h1 = request(t, "grey.tga", NT_TEXTURE_NORMALS_OR_HEIGHTS, 0.1),
+			       h2 = request(t, "grey.tga", NT_TEXTURE_NORMALS_OR_HEIGHTS, 0.2),
+			       h3 = request(t, "grey.tga", NT_TEXTURE_HEIGHTS, 0.2),
+			       color = request(t, "grey.tga", NT_TEXTURE_COLOR, 0);
+		assert_int_equal(make(t, judged, &error), NT_OK);
+		assert_ptr_equal(result(t, n1), result(t, n2));
+		assert_ptr_equal(result(t, n1), result(t, n3));
+		assert_int_equal(result(t, h1) == result(t, h2), judged);
+		assert_ptr_equal(result(t, h2), result(t, h3));
+		assert_int_equal(nt_textures_count(t), 4 - judged);
+		assert_true(result(t, h1)->from_heights);
+		assert_false(result(t, color)->from_heights);
+		assert_string_equal(result(t, h1)->name, "grey-normal.png");
+		assert_string_equal(result(t, color)->name, "grey.png");
+		assert_int_equal(result(t, n1)->type, NT_IMAGE_PNG);
+		nt_textures_free(t);
+	}
 }
 
 /* A grey TGA of noise, whose PNG is larger than 256 KB; where no file can be had, it stays in memory. */
@@ -94,7 +96,7 @@ TEST(large_results_are_in_a_file)
 		nt_textures *t = nt_textures_create(beside[i]);
 		nt_error error;
 		const uint32_t number = request(t, "noise.tga", NT_TEXTURE_COLOR, 0);
-		assert_int_equal(make(t, &error), NT_OK);
+		assert_int_equal(make(t, false, &error), NT_OK);
 		const nt_texture *texture = result(t, number);
 		assert_true(texture->size > 256 * 1024);
 		assert_int_equal(texture->mapped, i == 0);
@@ -109,26 +111,27 @@ TEST(large_results_are_in_a_file)
 
 TEST(file_that_is_not_what_it_was_is_an_error)
 {
-	put_tga("n.tga", 255, 128, 128);
-	nt_textures *t = nt_textures_create(NULL);
-	nt_error error;
-	request(t, "n.tga", NT_TEXTURE_COLOR, 0);
-	assert_int_equal(truncate(in_folder("n.tga"), 40), 0);
-	assert_int_equal(make(t, &error), NT_ERROR_IO);
-	assert_non_null(strstr(error.message, "changed"));
-	nt_textures_free(t);
-
-	t = nt_textures_create(NULL);
-	request(t, "n.tga", NT_TEXTURE_COLOR, 0);
-	assert_int_equal(unlink(in_folder("n.tga")), 0);
-	assert_int_equal(make(t, &error), NT_ERROR_MISSING);
-	nt_textures_free(t);
+	for (int how = 0; how < 3; how++) {
+		put_tga("n.tga", 255, 128, 128);
+		put_tga("other.tga", 255, 128, 128);
+		nt_textures *t = nt_textures_create(NULL);
+		nt_error error;
+		request(t, "n.tga", NT_TEXTURE_COLOR, 0);
+		char other[300];
+		snprintf(other, sizeof other, "%s", in_folder("other.tga"));
+		const int done = how == 0 ? truncate(in_folder("n.tga"), 40)
+			: how == 1 ? rename(other, in_folder("n.tga")) : unlink(in_folder("n.tga"));
+		assert_int_equal(done, 0);
+		assert_int_equal(make(t, false, &error), how == 2 ? NT_ERROR_MISSING : NT_ERROR_IO);
+		assert_true(how == 2 || strstr(error.message, "changed"));
+		nt_textures_free(t);
+	}
 }
 
 TEST(textures_without_memory_are_an_error)
 {
 	put_tga("grey.tga", 9, 9, 9);
-	for (size_t n = 0, failed = 1; failed; n++) {
+	for (size_t n = 0, failed = 1; failed; n++) { /* one that fails alone, and all from there on */
 		nt_textures *t = nt_textures_create(NULL);
 		const nt_image_places places = {.document = in_folder("m.mtl")};
 		const nt_texture_request what = {.kind = NT_TEXTURE_NORMALS_OR_HEIGHTS, .height = 0.1,
@@ -136,7 +139,10 @@ TEST(textures_without_memory_are_an_error)
 		const nt_texture_rules rules = {.threads = 1};
 		uint32_t number;
 		nt_error error;
-		fail_allocations_from(n);
+		if (n % 2)
+			fail_allocation(n / 2);
+		else
+			fail_allocations_from(n / 2);
 		nt_status status = nt_textures_request(t, &places, &what, &number, &error);
 		if (!status)
 			status = nt_textures_make(t, &rules, &error);
