@@ -273,17 +273,22 @@ static void vary_normals(soup *s, nt_random *random)
 	}
 }
 
-/* Up to the largest coordinates that are welded, or down to denormal ones, which coincide; in one direction, or all. */
-static void scale_positions(soup *s, nt_random *random)
+/* Up to the largest coordinates that are welded, or down to denormal ones, which coincide; or around the roots of both
+ * ends of floats, beyond which squares are no floats; in one direction, or all. Texture coordinates, too. */
+static void scale_rows(soup *s, nt_random *random)
 {
 	float largest = 0, scale;
-	const uint32_t axes = nt_random_below(random, 7) + 1, kind = nt_random_below(random, 4);
+	const uint32_t axes = nt_random_below(random, 7) + 1, kind = nt_random_below(random, 12);
+	const bool texcoords = kind > 3 && nt_random_below(random, 2);
+	const size_t step = texcoords ? 2 : 3;
+	float *const rows = texcoords ? s->texcoords[0] : s->positions[0];
 	for (size_t i = 0; i < 3 * s->corner_count; i++)
 		largest = fmaxf(largest, fabsf(s->positions[0][i]));
-	scale = (const float[]){FLT_MAX / 2 / largest * 0.999999f, 1e-44f, 1e-38f, 3e-42f}[kind];
-	for (size_t i = 0; i < 3 * s->corner_count; i++)
-		if (axes >> i % 3 & 1)
-			s->positions[0][i] *= scale;
+	scale = (const float[]){FLT_MAX / 2 / largest * 0.999999f, 1e-44f, 1e-38f, 3e-42f, 1e-38f, 1e-23f, 4e-23f,
+		1e-19f, 1e-10f, 1e9f, 1e18f, 1e19f}[kind];
+	for (size_t i = 0; i < step * s->corner_count; i++)
+		if (axes >> i % step & 1)
+			rows[i] *= scale;
 }
 
 static void sign_zeros(soup *s, nt_random *random)
@@ -312,7 +317,7 @@ static const struct {
 	const char *name;
 	void (*apply)(soup *s, nt_random *random);
 } changes[] = {{"grid", NULL}, {"flat faces", flatten_faces}, {"half-flat quads", flatten_quads},
-	{"many normals", vary_normals}, {"scaled", scale_positions}, {"zeros", sign_zeros},
+	{"many normals", vary_normals}, {"scaled", scale_rows}, {"zeros", sign_zeros},
 	{"rounded", round_positions}};
 enum { CHANGES = sizeof changes / sizeof *changes };
 

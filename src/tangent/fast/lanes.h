@@ -165,8 +165,11 @@ static void NT_NOINLINE tell_apart(const lanes_in *NT_RESTRICT in, lanes_out *NT
  * normals, where its components are below 2 and its length is below 3.5, the product is still above 1.0e-5 - 1. */
 #define BEYOND 0x0400u
 
-/* The same for whole floats from 2^-100 up to 2^28. */
+/* The same for whole floats from 2^-100 up to 2^28, and from 2^-64 up to 2^64: an area above the latter's least divides
+ * every length, which is no more than the root of FLT_MAX, to a finite magnitude. If it were infinite, a weight of 0
+ * would make NaN of it, and halves of a quad are averaged whose results are not the same in all. */
 #define WELL_INSIDE 0x32800000u
+#define NOT_SMALL 0x20800000u
 
 /* Below the sign of a float: it is 2 or more, infinite, or NaN. */
 #define TWO 0x40000000u
@@ -296,13 +299,25 @@ static inline bool are_plain(const lanes_out *out, size_t count)
 {
 	lanes all = ~(lanes){0};
 	for (size_t i = 0; i < count; i += WIDTH) {
-		all &= (load_lanes(out->area + i) & (TWO * 2 - 1)) + WELL_INSIDE;
+		const lanes size = load_lanes(out->area + i) & (TWO * 2 - 1);
+		all &= (size + WELL_INSIDE) & (size + NOT_SMALL);
 		lanes states = load_lanes(out->sum[0][3] + i);
 		for (size_t k = 1; k < 3; k++)
 			states &= load_lanes(out->sum[k][3] + i);
 		all &= states << 30;
 	}
 	return !any_lane(~all & TWO);
+}
+
+/* Whether an edge across the normal is as long as the definition needs to make numbers of it: it divides by the length
+ * where a component is above FLT_MIN, and the square of that may be 0. */
+static inline NT_ALWAYS_INLINE int has_length(const float n[3], const float e[3])
+{
+	const float ne = n[0] * e[0] + n[1] * e[1] + n[2] * e[2];
+	const float x = e[0] - ne * n[0], y = e[1] - ne * n[1], z = e[2] - ne * n[2];
+	const float squared = x * x + y * y + z * z;
+	const int none = (fabsf(x) <= FLT_MIN) & (fabsf(y) <= FLT_MIN) & (fabsf(z) <= FLT_MIN);
+	return none | ((squared > 0.0f) & (squared <= FLT_MAX));
 }
 
 /* Corners whose u lies exactly along the normal add nothing, whichever corners are averaged with them, if their weight
@@ -316,20 +331,24 @@ static void NT_NOINLINE clear_along(const lanes_in *in, lanes_out *out, size_t c
 		some |= load_lanes(out->sound + i) & ~load_lanes(out->degenerate + i) &
 			~(load_lanes(out->sum[0][3] + i) & load_lanes(out->sum[1][3] + i) &
 				load_lanes(out->sum[2][3] + i));
-	for (size_t i = 0; any_lane(some & (uint32_t)NT_STATE_SOUND) && i < count; i++) {
-		const float u[3] = {out->u[0][i], out->u[1][i], out->u[2][i]};
-		float squares = 0;
-		bool along[3];
-		for (size_t k = 0; k < 3; k++) {
-			const float *p = in->row[k][0] + i, *n = in->row[k][3] + i;
-			const float x = n[0], y = n[NT_TRIANGLES], z = n[2 * NT_TRIANGLES];
-			const float part = x * u[0] + y * u[1] + z * u[2];
-			along[k] = (u[0] == part * x) & (u[1] == part * y) & (u[2] == part * z);
-			squares += p[0] * p[0] + p[NT_TRIANGLES] * p[NT_TRIANGLES] +
-				   p[2 * NT_TRIANGLES] * p[2 * NT_TRIANGLES];
+	if (!any_lane(some & (uint32_t)NT_STATE_SOUND))
+		return;
+	for (int k = 0; k < 3; k++) {
+		const float (*const p)[NT_TRIANGLES] = in->row[k], (*const n)[NT_TRIANGLES] = p + 3;
+		const float (*const q)[NT_TRIANGLES] = in->row[(k + 1) % 3];
+		const float (*const r)[NT_TRIANGLES] = in->row[(k + 2) % 3];
+		int along[NT_TRIANGLES];
+		EACH_LANE((int)whole_lanes(count)) {
+			const float x = n[0][i], y = n[1][i], z = n[2][i];
+			const float part = x * out->u[0][i] + y * out->u[1][i] + z * out->u[2][i];
+			const float e[3] = {q[0][i] - p[0][i], q[1][i] - p[1][i], q[2][i] - p[2][i]};
+			const float f[3] = {r[0][i] - p[0][i], r[1][i] - p[1][i], r[2][i] - p[2][i]};
+			along[i] = out->sound[i] & (out->u[0][i] == part * x) & (out->u[1][i] == part * y) &
+				   (out->u[2][i] == part * z) & has_length((float[]){x, y, z}, e) &
+				   has_length((float[]){x, y, z}, f);
 		}
-		for (size_t k = 0; k < 3 && out->sound[i] && squares < MOST_RATIO; k++)
-			if (along[k])
+		for (size_t i = 0; i < count; i++)
+			if (along[i])
 				memcpy(out->add[k] + 4 * turned_place(i), &nothing, sizeof nothing);
 	}
 }

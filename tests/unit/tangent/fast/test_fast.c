@@ -400,6 +400,38 @@ TEST(unusable_vertices_are_byte_identical)
 		}
 }
 
+/* Triangles of which u runs along the normal, and a quad seen nearly as a line: mikktspace.c's values where squares of
+ * lengths are below floats, or a magnitude is above them. An edge whose square is 0 is divided by 0, which makes the
+ * weight no number; one that is not above FLT_MIN is not divided. An infinite magnitude of weight 0 is no number, so
+ * that the halves of the quad do not have the same result, and theirs is normalised once more. */
+TEST(squares_out_of_range_are_byte_identical)
+{
+	static const struct {
+		float unit;    /* of the triangle's edges across the normal; 0: the quad */
+		float tangent; /* each component, at each corner of the triangle */
+	} rows[] = {{1.5e-38f, NAN}, {1e-38f, 0}, {2e-23f, NAN}, {4e-23f, 0}, {0, 0}};
+	static const float quad[4][3] = {{0, 0, 0}, {1e19f, 9e9f, 0}, {3e19f, 1.3e10f, 0}, {0, 1e10f, 0}};
+	static const float quad_uv[4][2] = {{0, 0}, {1, 6e-23f}, {0.5f, 4e-23f}, {0.75f, 7e-23f}};
+	static float of_quad[4][4] = {{1, 4.28570408e-11f, 0, 1}, {0.999997973f, -0.00206158031f, 0, 1},
+		{0.999997854f, -0.00206158007f, 0, 1}, {0.999999464f, -0.00103079062f, 0, 1}};
+	for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+		const float unit = rows[i].unit, along = unit != 0;
+		const float triangle[3][3] = {{1, 0, 0}, {1.5f, 0, unit}, {-1, 0, unit}};
+		const float uv[3][2] = {{0, 0}, {0, 1}, {1, 1}};
+		const float normals[4][3] = {{along, 0, 1 - along}, {along, 0, 1 - along}, {along, 0, 1 - along},
+			{0, 0, 1}};
+		const nmtan_mesh mesh = {.struct_bytes = sizeof mesh, .face_count = 1, .vertex_count = unit ? 3 : 4,
+			.positions = unit ? triangle[0] : quad[0], .normals = normals[0],
+			.texcoords = unit ? uv[0] : quad_uv[0], .face_sizes = unit ? NULL : (const uint8_t[]){4}};
+		const nmtan_mesh full = nt_filled(&mesh);
+		float of_triangle[3][4];
+		for (int k = 0; k < 3; k++)
+			memcpy(of_triangle[k], (float[4]){rows[i].tangent, rows[i].tangent, rows[i].tangent, -1}, 16);
+		const nt_result expected = {.tangents = unit ? of_triangle[0] : of_quad[0]};
+		assert_int_equal(nt_compare_variants("squares", &full, mesh.vertex_count, &expected, false), 0);
+	}
+}
+
 /* A sheet of 8 x 8 cells, bent and mirrored in the middle, whose triangles are beyond doubt but for one beside which
  * they are not marked: repair has to see those around it all the same. */
 enum { SHEET = 9, MIDDLE = 4 };
