@@ -42,14 +42,12 @@ static nt_status append_name(nt_depfile *depfile, const char *path, bool relativ
 		nt_path_below(&shown, depfile->current.data, path, depfile->current.data, path);
 	else
 		nt_buffer_text(&shown, path);
-	if (!status && shown.failed)
-		status = nt_fail_memory(error);
-	if (!status && strpbrk(shown.data, "\n\r"))
+	if (!status && !shown.failed && strpbrk(shown.data, "\n\r"))
 		status = nt_fail_file(error, NT_ERROR_UNSUPPORTED, path,
 			"a name with a line feed cannot be in a depfile");
-	if (!status)
+	else if (!status && !shown.failed)
 		append_escaped(&depfile->text, shown.data);
-	nt_buffer_free(&shown);
+	nt_buffer_free_into(&shown, &depfile->text);
 	return status;
 }
 

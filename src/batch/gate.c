@@ -127,8 +127,7 @@ uint64_t nt_need_of(const char *input, const nt_settings *settings, uint64_t eno
 		return LEAST + (format == NT_FORMAT_DRC ? DRACO_BYTE_COST : BYTE_COST) * size;
 	if (format == NT_FORMAT_GLB && LEAST + MOST_BYTE_COST * size <= enough)
 		return LEAST + MOST_BYTE_COST * size;
-	if (nt_file_open(&file, input, NT_NAMED_BY_US, &error))
-		return 0;
+	nt_file_open(&file, input, NT_NAMED_BY_US, &error); /* of a failure there are no bytes */
 	const uint64_t need = gltf_need(&file, settings);
 	nt_file_close(&file);
 	return need;

@@ -261,9 +261,8 @@ static bool append_state(nt_buffer *text, const nt_trace_file *file, bool by_con
 	const bool is_written = file->kind == NT_TRACE_WRITTEN, has_digest = by_content || (recent && !is_written);
 	if (has_digest && (nt_digest_of_file(file->path, digest, &ignored) || !digest[0]))
 		return false;
-	/* renaming changes the inode's time */
-	if (stat(file->path, &info) != 0 || !S_ISREG(info.st_mode) || (uint64_t)info.st_size != file->size ||
-		info.st_ino != file->inode || nt_trace_modified(&info) != file->modified ||
+	/* renaming changes the inode's time; of another size the line is not true */
+	if (stat(file->path, &info) != 0 || info.st_ino != file->inode || nt_trace_modified(&info) != file->modified ||
 		(!is_written && nt_trace_changed(&info) != file->changed))
 		return false;
 	nt_buffer_format(text, ",\"bytes\":%" PRIu64, file->size);

@@ -10,6 +10,16 @@ is "$(ls out | tr '\n' ' ')" "plates.glb quad.glb quad_le.ply "
 says "3 of 3 done"
 run "$data/plates.glb" single.glb
 same single.glb out/plates.glb
+# without an ending the bytes tell the format
+rm -r out
+cp "$data/plates.bin" "$data/bumps.png" .
+for name in plates.gltf quad_le.ply plates.glb quad.obj; do cp "$data/$name" "${name#*.}"; done
+run -d out gltf ply glb obj
+exits 0
+is "$(ls out | tr '\n' ' ')" "bumps.png glb.glb gltf.bin gltf.gltf obj.glb ply.ply "
+# a folder that is gone has no name
+here=$PWD
+(mkdir gone && cd gone && rmdir ../gone && "$NMTAN" -q -d "$here/out" "$here/obj") || wrong "exit code $?"
 
 scene "times and bytes of many are summed"
 cp "$data/plates.gltf" "$data/plates.bin" "$data/bumps.png" .
@@ -130,7 +140,7 @@ cp "$data/plates.glb" y/a.glb
 cp "$data/quad.obj" x/b.obj
 cp "$data/quad_le.ply" y/b.ply
 cp "$data/quad.obj" one.obj
-run -q -d out --output-format=glb --manifest=m x/a.obj y/a.glb one.obj x/b.obj ./one.obj y/b.ply
+run -q -d out --output-format=glb --manifest=m --report=r.json x/a.obj y/a.glb one.obj x/b.obj ./one.obj y/b.ply
 exits 1
 says "'x/a.obj' and 'y/a.glb' would both be written to 'out/a.glb'"
 says "'x/b.obj' and 'y/b.ply' would both be written to 'out/b.glb'; --keep-tree=. keeps the folders of inputs"
@@ -142,6 +152,8 @@ says "; --keep-tree='it'\''s' keeps the folders of inputs"
 rm -r "it's"
 is "$(ls out)" one.glb
 is "$(wc -l <m)" 5
+is "$(value r.json '[f["file"] for f in r["files"] if "another" in str(f["failure"]) or "both" in str(f["failure"])]')" \
+	"['x/a.obj', 'y/a.glb', 'x/b.obj', 'y/b.ply']"
 cp x/a.obj y/A.OBJ
 run -q -d cases x/a.obj y/A.OBJ
 exits 0
@@ -258,6 +270,14 @@ says "names: warning: there are no names in it, and nothing to do"
 run -q -d out --files-from=names
 exits 0
 silent
+
+scene "a folder that is too deep for a name is not passed over"
+mkdir deep
+(cd deep && for i in {1..17}; do mkdir -p "$(printf %0250d 0)" && cd -P "$(printf %0250d 0)"; done)
+run -q -r -d out deep
+exits 2
+says "0: cannot read the folder: File name too long"
+only deep
 
 scene "a link to a mesh that leads nowhere is an input that fails"
 mkdir l

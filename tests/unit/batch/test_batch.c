@@ -3,7 +3,10 @@
 #include "batch/batch.h"
 #include "test.h"
 
+#include <fcntl.h>
 #include <stdatomic.h>
+#include <stdio.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #define INPUTS(...) ((const char *const[]){__VA_ARGS__}), \
@@ -119,7 +122,7 @@ static atomic_int tries[2];
 static nt_status hungry_run(const char *input, const char *output, const nt_settings *settings, nt_summary *summary,
 	nt_error *error)
 {
-	(void)output;
+	(void)output, (void)settings;
 	const int now = atomic_fetch_add(&running, 1) + 1, own = input[0] - 'a';
 	const bool first = tries[own]++ == 0;
 	summary->mesh_count++;
@@ -127,7 +130,7 @@ static nt_status hungry_run(const char *input, const char *output, const nt_sett
 		usleep(2000);
 	atomic_fetch_sub(&running, 1);
 	if (first || input[1] == 'x')
-		return settings->max_memory ? nt_fail_memory_limit(settings->max_memory, error) : nt_fail_memory(error);
+		return nt_fail_memory(error);
 	assert_int_equal(now, 1);
 	return NT_OK;
 }
@@ -151,6 +154,74 @@ TEST(what_had_no_memory_beside_others_is_tried_again_alone_with_a_limit_too)
 		assert_int_equal(tries[0], 2);
 		assert_int_equal(tries[1], 2);
 		nt_batch_free(&batch);
+	}
+}
+
+/* Stands for nt_run: a file changes between the moment when the trace notes it and the one when the record does. */
+static struct {
+	bool of_output;
+	const char *text; /* it has this then; NULL: it stays */
+	bool is_other;    /* by another file, which takes its name */
+} change;
+static unsigned changing_runs;
+
+static void put_with_time(const char *path, const char *text, const struct stat *info)
+{
+	put_text_file(path, text);
+	if (info)
+		utimensat(AT_FDCWD, path, (struct timespec[]){info->st_atim, info->st_mtim}, 0);
+}
+
+static nt_status changing_run(const char *input, const char *output, const nt_settings *settings, nt_summary *summary,
+	nt_error *error)
+{
+	struct stat read, written;
+	(void)settings, (void)error;
+	changing_runs++;
+	put_text_file(output, "made");
+	assert_int_equal(stat(input, &read) + stat(output, &written), 0);
+	nt_trace_use(&summary->trace);
+	nt_trace_note(NT_TRACE_READ, input, NULL, &read);
+	nt_trace_note(NT_TRACE_WRITTEN, output, NULL, &written);
+	nt_trace_use(NULL);
+	usleep(30000);
+	if (change.text && changing_runs == 1) {
+		const char *path = change.of_output ? output : input;
+		put_with_time(change.is_other ? "other" : path, change.text,
+			change.of_output && !change.is_other && strlen(change.text) == 4 ? NULL
+				: change.of_output ? &written : &read);
+		assert_int_equal(change.is_other ? rename("other", path) : 0, 0);
+	}
+	return NT_OK;
+}
+
+TEST(what_changes_before_the_record_has_it_is_made_again)
+{
+	static const __typeof__(change) rows[] = {{false, NULL, false}, {false, "next", false}, {false, "next", true},
+		{false, "longer", false}, {true, "next", false}, {true, "next", true}, {true, "longer", false}};
+	for (size_t i = 0; i < 2 * sizeof rows / sizeof *rows; i++) {
+		change = rows[i / 2];
+		changing_runs = 0;
+		put_text_file("c.obj", "text");
+		usleep(30000);
+		for (int run = 0; run < 2; run++) {
+			nt_batch batch;
+			nt_update *update;
+			nt_error error;
+			size_t ran = 0;
+			const nt_settings settings = {.io.threads = 1};
+			const nt_update_options options = {.look = true, .record = "r", .options = "",
+				.by = i % 2 ? NT_UPDATE_BY_CONTENT : NT_UPDATE_BY_TIME};
+			assert_int_equal(nt_update_begin(&update, &options, &error), NT_OK);
+			assert_int_equal(nt_batch_pair(&batch, "c.obj", "c.glb", &error), NT_OK);
+			nt_batch_run(&batch, &settings, &(nt_batch_options){.run = changing_run, .update = update,
+				.done = pass, .user = &ran});
+			assert_int_equal(batch.jobs[0].status, NT_OK);
+			nt_batch_free(&batch);
+			nt_update_end(update);
+		}
+		assert_int_equal(changing_runs, change.text ? 2 : 1);
+		assert_int_equal(unlink("r"), 0);
 	}
 }
 
