@@ -170,12 +170,9 @@ static nt_status settle_names(nt_output *output, nt_error *error)
 		linked = !sink->staging || link_stable(sink);
 	const int number = errno;
 	nt_status status = sync_step(output, error);
-	if (!status)
-		nt_output_remove_superseded(output);
-	if (!status)
-		status = sync_step(output, error);
 	if (status)
 		return status;
+	nt_output_remove_superseded(output);
 	if (!linked || place_main(output, output->main, &ignored)) {
 		const char *why = strerror(linked ? errno : number);
 		nt_buffer *note = output->options.result ? &output->options.result->note : NULL;

@@ -63,7 +63,7 @@ struct nt_output {
 	nt_arena texts;
 	nt_sink *first, *last, *main, *staging;
 	nt_temporary *leader; /* has the lock of the sidecars if the main file is a link; NULL: not yet */
-	nt_sink **named; /* by the names that they have or will have, those of sidecars for the time being, too */
+	nt_sink **named; /* by the names that they have or will have */
 	size_t named_count, named_capacity;
 	nt_hash_index names;
 	nt_key_set guards; /* of nt_file_id */

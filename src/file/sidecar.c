@@ -170,12 +170,9 @@ static nt_status may_replace(nt_output *output, nt_sink *sink, bool *may, nt_err
 	return result;
 }
 
-/* A file's name, or a sidecar's for the time being. */
 static bool has_name(const nt_sink *sink, const char *name)
 {
-	const char *own = nt_sink_is_sidecar(sink) ? sink->target : sink->path;
-	return strcmp(nt_last_part(own), name) == 0 ||
-		(sink->staging && strcmp(nt_last_part(sink->staging), name) == 0);
+	return strcmp(nt_last_part(nt_sink_is_sidecar(sink) ? sink->target : sink->path), name) == 0;
 }
 
 nt_status nt_output_note_name(nt_output *output, nt_sink *sink, const char *path, nt_error *error)
@@ -188,7 +185,7 @@ nt_status nt_output_note_name(nt_output *output, nt_sink *sink, const char *path
 	return NT_OK;
 }
 
-/* Whether a sidecar of this set is called so, for good or for a time. */
+/* Whether a sidecar of this set is called so. */
 static bool is_used(const nt_output *output, const char *name)
 {
 	size_t at = NT_HASH_BEGIN;
@@ -464,8 +461,6 @@ nt_status nt_output_settle(nt_output *output, nt_sink *sink, nt_error *error)
 	sink->buffer = NULL;
 	if (!status)
 		status = nt_output_note_name(output, sink, sink->target, error);
-	if (!status && sink->staging)
-		status = nt_output_note_name(output, sink, sink->staging, error);
 	if (!status && nt_temporary_is_led(sink->temporary))
 		status = nt_sink_finish(sink, output->options.sync, error);
 	return status;
