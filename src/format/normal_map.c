@@ -129,7 +129,7 @@ static const nt_json_value *image_of(const nt_gltf *document, const nt_mesh *mes
 	const nt_json_value *texture = element(nt_gltf_root_member(document, "textures"),
 		nt_json_find(info_of(document, mesh, slot), "index"));
 	const nt_json_value *extensions = nt_json_find(texture, "extensions");
-	uint64_t number = 0;
+	uint64_t number = NT_NONE;
 	nt_json_get_uint64(source_of(texture), &number);
 	map->image = (uint32_t)number;
 	map->turnable = true;

@@ -158,12 +158,11 @@ static nt_status open_jobs(const turning *t, nt_error *error)
 	for (size_t j = 0; j < t->job_count && !status; j++) {
 		job *x = &t->jobs[j];
 		status = nt_normal_map_open_image(&x->map, t->document, x->first.image, error);
-		const uint64_t work = status || !x->map.bytes ? 0 : nt_image_work(x->map.bytes, x->map.size);
-		if (!work)
-			continue;
+		const uint64_t work = status ? 0 : nt_image_work(x->map.bytes, x->map.size);
 		pixels += 2 * work;
 		bytes += x->map.size;
-		status = nt_check_image(work, t->how->max_pixels, x->map.size, NULL, error);
+		if (!status)
+			status = nt_check_image(work, t->how->max_pixels, x->map.size, NULL, error);
 	}
 	return status ? status : nt_check_pixels(pixels, t->how->max_pixels, bytes, error);
 }

@@ -701,6 +701,9 @@ run up.gltf plain.gltf
 run --flip-green=auto up.gltf auto.gltf
 says_not "converted"
 same plain.gltf auto.gltf
+changed quad.gltf bare.gltf 'g["textures"].append({}); g["materials"] = [{"pbrMetallicRoughness": {"baseColorTexture": {"index": 1}}}]'
+run --only=all --report=r.html bare.gltf out.gltf # its texture has no image, and not the first one
+is "$(value r.html 'r["images"]')" "[]"
 
 # colour.jpg: 16 x 16, four squares of one colour each, 4:4:4; sharp 0.35 (libjpeg-turbo through libvips) decodes them as
 # (128, 127, 254), (200, 60, 219), (90, 180, 230) and (128, 40, 210)
