@@ -704,6 +704,19 @@ same plain.gltf auto.gltf
 changed quad.gltf bare.gltf 'g["textures"].append({}); g["materials"] = [{"pbrMetallicRoughness": {"baseColorTexture": {"index": 1}}}]'
 run --only=all --report=r.html bare.gltf out.gltf # its texture has no image, and not the first one
 is "$(value r.html 'r["images"]')" "[]"
+changed quad.gltf bare.gltf 'g["textures"].append({}); g["materials"][0]["normalTexture"]["index"] = 1'
+run --flip-green=on bare.gltf out.gltf
+is "$(gltf out.gltf 'g.images')" "$(gltf quad.gltf 'g.images')"
+# pictures lie where the map is looked up: u' = 2 u + 0.25, v' = 4 v + 1 - 4 - 0.5 with v down
+quad 'norm -s 2 4 1 -o 0.25 0.5 0 up.png'
+run quad.obj moved.gltf
+changed moved.gltf far.gltf 'g["materials"][0]["normalTexture"]["extensions"]["KHR_texture_transform"]["offset"] = [1e39, 0]'
+for file in quad.obj moved.gltf far.gltf; do
+	run -q --check --fail-on=never --report=r.html $file
+	value r.html 'r["files"][0]["meshes"][0]["images"][0]["map"]' >>places
+done
+is "$(uniq -c places | sed 's/^ *//')" "2 [2, 0, 0.25, 0, 4, -3.5]
+1 [1, 0, 0, 0, 1, 0]"
 
 # colour.jpg: 16 x 16, four squares of one colour each, 4:4:4; sharp 0.35 (libjpeg-turbo through libvips) decodes them as
 # (128, 127, 254), (200, 60, 219), (90, 180, 230) and (128, 40, 210)
@@ -782,7 +795,7 @@ scene "a height map in the place of a glTF's normal map is a finding, and made a
 images write h.png 16 16 '16 * (x * y % 16)'
 cp "$data/grey.jpg" .
 images write near.png 16 16 '(lambda r: (r, r, r + (x + y) % 2))(10 * (x * y % 16))' # as scaling rounds it
-for file in h.png grey.jpg near.png; do
+for file in h.png grey.jpg near.png "-clamp on h.png"; do
 	quad "norm $file"
 	run quad.obj direct.glb
 	images embedded direct.glb 0 normals.png

@@ -47,14 +47,15 @@ SUBJECTS = {
              'memory'],
     'image': ['textures', 'materials', 'limits'],
     'obj': ['texts', 'materials', 'colors', 'convert', 'damaged', 'normals', 'origin'], 'ply': ['texts', 'convert', 'damaged', 'small_models'],
-    'format': ['convert', 'verdict', 'textures'], 'report': ['report', 'check', 'verdict', 'diff', 'report_folder', 'page'],
+    'format': ['convert', 'verdict', 'textures', 'transcript', 'draco'], 'report': ['report', 'check', 'verdict', 'diff', 'report_folder', 'page'],
     'pipeline': ['convert', 'quads', 'normals', 'morphs', 'choose', 'report', 'manifest', 'textures'],
     'batch': ['batch', 'update', 'manifest', 'depfile', 'placement', 'stale', 'limits', 'usage', 'system', 'memory'],
     'cli': ['usage', 'output', 'limits', 'choose', 'manifest', 'batch', 'diff', 'convert', 'verdict', 'manual', 'update',
             'depfile', 'placement', 'report', 'materials'],
-    'ext': ['draco', 'meshopt', 'modules', 'textures', 'verify'],
+    'ext': ['draco', 'meshopt', 'modules', 'textures', 'verify', 'texts'],
     'base': ['limits', 'batch', 'texts', 'damaged', 'output', 'manifest', 'report', 'system', 'memory'],
 }
+UNITS = {'topology': ['api'], 'tangent': ['api'], 'ext': ['image']}  # rooms whose unit tests are those of a room, too
 LEFT_OUT = re.compile(r'test_cost|test_page|/tree/(?!test_manual)|/bindings/')
 
 
@@ -138,7 +139,7 @@ def tests_of(path):
     name = lambda p: os.path.basename(p)[5:-3]
     rank = lambda p: min([k for k, word in enumerate(words) if word == name(p) or word in name(p).split('_')], default=99)
     outside = sorted([p for p in scripts if rank(p) < 99], key=rank)
-    units = [p for p in programs if '/unit/%s/' % parts[0] in p or '/api/' in p and parts[0] in ('topology', 'tangent', 'api')]
+    units = [p for p in programs if p.split('tests/')[1].split('/')[-2] in [parts[0]] + UNITS.get(parts[0], [])]
     units.sort(key=lambda p: not p.endswith('test_' + stem))
     return outside, units, [p for p in programs + scripts if p not in outside + units]
 
