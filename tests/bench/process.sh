@@ -27,7 +27,7 @@ printf '%-48s %9s %9s   %s\n' "" nmtan other "median quartile"
 "$runner" 3 500 "500 of them, in 500 processes" "$nmtan" -q in/@.obj out/@.glb -- "$peer" -i in/@.obj -o out/@.glb
 "$runner" 3 500 "500 of them, nmtan in one process" "$nmtan" -q -d out --files-from=list -- "$peer" -i in/@.obj -o out/@.glb
 for count in 1 500 2000 5000; do
-	python3 "$root/tests/support/cost_inputs.py" ranges $count pool.glb 160
+	python3 "$root/tests/support/inputs.py" gltf_ranges $count pool.glb 160
 	"$runner" 20 1 "$count primitives over 25 921 vertices" "$nmtan" -q --only=all pool.glb out/0.glb -- \
 		"$peer" -noq -gt -i pool.glb -o out/0.glb 2>messages
 	"$runner" 20 1 "the same, nmtan --check" "$nmtan" --check --only=all --fail-on=never pool.glb -- \

@@ -8,8 +8,8 @@
 # inputs KIND COUNT FILE [SIDE]: what is asked for again, in another scene, is the same file.
 inputs() {
 	local made=$WORK/$1.$2.${4-}
-	[ -e "$made" ] || python3 "$ROOT/tests/support/cost_inputs.py" "$1" "$2" "$made" ${4+"$4"}
-	ln "$made" "$3"
+	[ -e "$made/$3" ] || { mkdir -p "$made" && python3 "$ROOT/tests/support/inputs.py" "$1" "$2" "$made/$3" ${4+"$4"}; }
+	ln "$made/$3" "$3"
 }
 
 # within TIMES MEGABYTES ARGUMENTS...: runs nmtan, which must take less memory, and so many times less processor time than
@@ -48,14 +48,19 @@ sys.exit(child.returncode)' $((times * factor)) $((megabytes * factor + (factor 
 	[ ! -s "$WORK/cost.txt" ] || wrong "$(cat "$WORK/cost.txt")"
 }
 
-# grows KIND COUNT WORDS...: COUNT, 2 COUNT and 4 COUNT of a kind take linear time; IN is the input, whose name ends with
-# `ending`. With `first` set to words, what nmtan makes of it by these.
-first= ending=obj
+# grows KIND COUNT WORDS...: COUNT, 2 COUNT and 4 COUNT of a kind take linear time; IN is the input. With `first` set to words,
+# what nmtan makes of it by these.
+first=
 grows() {
-	local kind=$1 count=$2 size files=()
+	local kind=$1 count=$2 size ending=obj files=()
 	shift 2
+	case $kind in
+	gltf_*) ending=glb ;;
+	ply_*) ending=ply ;;
+	option_*) ending=txt ;;
+	esac
 	for size in 1 2 4; do
-		python3 "$ROOT/tests/support/cost_inputs.py" "$kind" $((size * count)) $size.$ending
+		python3 "$ROOT/tests/support/inputs.py" "$kind" $((size * count)) $size.$ending
 		files+=($size.$ending)
 		# shellcheck disable=SC2086
 		[ -z "$first" ] || run -q $first $size.obj $size.glb
@@ -72,14 +77,14 @@ case $NMTAN in
 esac
 
 scene "$blocks Draco blocks are found in linear time"
-inputs usemtl $blocks blocks.obj
+inputs obj_materials $blocks blocks.obj
 run -q --only=all blocks.obj blocks.glb
 run -q --only=all --existing=replace --draco=edgebreaker blocks.glb draco.glb
 within 4 150 -q --only=all --existing=replace draco.glb out.glb
 exits 0
 
 scene "$faces triangles at one place are compressed in linear time, and a finding says how"
-inputs repeated "$faces" repeated.obj
+inputs obj_equal_faces "$faces" repeated.obj
 run -q --only=all repeated.obj repeated.glb
 within 5 300 -q --only=all --existing=replace --draco=edgebreaker --verify --report=r.json --fail-on=never repeated.glb out.glb
 exits 0
@@ -87,32 +92,31 @@ is "$(value r.json '[f["code"] for f in r["files"][0]["findings"] if f["code"].s
 
 scene "what was quadratic once grows as its input does"
 first=--only=all
-for kind in repeated centre; do
+for kind in obj_equal_faces obj_centre; do
 	grows $kind $((faces / 8)) --only=all --existing=replace --draco=edgebreaker --verify IN out.glb
 done
 first=
-grows folded $((faces / 8)) IN out.ply
-grows tiles $((faces / 8)) --check --report=r.json IN
-grows objects $((faces / 8)) --check IN
-grows bumps 10 --check IN
-grows turned $((blocks / 5)) --flip-green=on IN out.glb
-for kind in animated levels; do
+grows obj_folded_quads $((faces / 8)) IN out.ply
+grows obj_tiles $((faces / 8)) --check --report=r.json IN
+grows obj_quads_of_objects $((faces / 8)) --check IN
+grows mtl_bumps 10 --check IN
+grows gltf_images_of_two_uses $((blocks / 5)) --flip-green=on IN out.glb
+for kind in gltf_animated_transforms gltf_levels_of_detail; do
 	grows $kind $((blocks / 5)) IN out.glb
 done
 for format in json html; do
-	grows names 250 --check --only=all --report=r.$format IN
+	grows gltf_long_names 8000 --check --only=all --report=r.$format IN
 done
 
 scene "a library that has many names is read once, and names that no file can have are not followed"
-grows libraries 500 IN out.glb
-for ending in obj ply glb; do
-	grows slashes 200000 --images=embed IN out.glb
-	grows slashes 200000 --images=embed --outside=yes IN out.glb
+grows obj_names_of_one_library 500 IN out.glb
+for kind in mtl ply gltf; do
+	grows ${kind}_slashes 200000 --images=embed IN out.glb
+	grows ${kind}_slashes 200000 --images=embed --outside=yes IN out.glb
 done
-ending=obj
 
 scene "a file that many buffers and images name is opened once, and copied once"
-python3 "$ROOT/tests/support/cost_inputs.py" buffers 1500 many.gltf
+python3 "$ROOT/tests/support/inputs.py" gltf_names_of_one_pair 1500 many.gltf
 mkdir out
 within 4 100 -q --check many.gltf
 within 4 100 -q --only=needed --existing=keep --images=copy --buffers=link --outside=yes --morph=keep --dry-run many.gltf out/many.gltf
@@ -127,7 +131,7 @@ exits 0
 rm -r out
 
 scene "a file that many buffers name is one buffer of what is edited, as its views and errors say"
-python3 "$ROOT/tests/support/cost_inputs.py" buffers 1500 many.gltf
+python3 "$ROOT/tests/support/inputs.py" gltf_names_of_one_pair 1500 many.gltf
 for words in "many.gltf out.glb" "--buffers=embed many.gltf out.gltf" "many.gltf out.gltf"; do
 	# shellcheck disable=SC2086
 	run -q --only=all $words
@@ -146,7 +150,7 @@ exits 3
 says "/buffers/1500"
 
 scene "each scan of a JPEG and each strip of a TIFF takes as long as another, and counts"
-for row in "scans 20 262144" "strips 200 4096"; do
+for row in "jpeg_scans 20 262144" "tiff_high_strips 200 4096"; do
 	read -r kind count pixels <<<"$row"
 	grows $kind $count --textures=png --max-pixels=100000000000 IN out.gltf
 	for size in 1 2 4; do
@@ -158,8 +162,8 @@ done
 
 scene "no more files are open at a time, however many an input or an output has"
 for count in 30 120 600; do
-	python3 "$ROOT/tests/support/cost_inputs.py" apart $count $count.gltf
-	python3 "$ROOT/tests/support/cost_inputs.py" colors $count $count.obj
+	python3 "$ROOT/tests/support/inputs.py" gltf_files_apart $count $count.gltf
+	python3 "$ROOT/tests/support/inputs.py" mtl_tga_images $count $count.obj
 	for words in "--images=embed $count.gltf out.glb" "--images=copy --buffers=copy $count.gltf out/o.gltf" "$count.gltf out.gltf" \
 		"--flip-green=on $count.gltf out.glb" "--textures=png $count.obj out.gltf" "--images=embed $count.obj out.glb" \
 		"--check --check-maps=on $count.gltf"; do
@@ -174,20 +178,18 @@ for count in 30 120 600; do
 done
 
 scene "outputs of many inputs are compared with each other in linear time"
-ending=txt
-grows list 200 -d out --files-from=IN --report=r.json --manifest=m --depfile=d --record=n
-ending=obj
+grows option_inputs 200 -d out --files-from=IN --report=r.json --manifest=m --depfile=d --record=n
 
 scene "morph targets that share an accessor take as long as they are many, and little memory each"
 for count in 100 200 400; do
-	python3 "$ROOT/tests/support/cost_inputs.py" targets $count $count.targets.glb 30
+	python3 "$ROOT/tests/support/inputs.py" gltf_targets_of_grid $count $count.targets.glb 30
 done
 command python3 "$ROOT/tests/support/growth.py" 8 $((factor))e-1 100.targets.glb 200.targets.glb 400.targets.glb -- \
 	"$NMTAN" -q IN out.glb >"$WORK/cost.txt" 2>&1 || wrong "$(cat "$WORK/cost.txt")"
 # 2 000 targets: 31 MB, of which 23 are the output; one at a time is in memory, authored tangents or not, also of
 # primitives that share vertices, and while these are compared
-for kind in targets halves; do
-	python3 "$ROOT/tests/support/cost_inputs.py" $kind 2000 whole.glb 30
+for kind in gltf_targets_of_grid gltf_targets_of_halves; do
+	python3 "$ROOT/tests/support/inputs.py" $kind 2000 whole.glb 30
 	for words in "" --weld; do
 		# shellcheck disable=SC2086
 		within 30 45 -q --only=all $words whole.glb out.glb
@@ -210,15 +212,13 @@ done
 grep -q 'xxx\.\.\. (1000000 bytes)' r.json || wrong "the name is not cut"
 
 scene "a PLY header of many properties, or of $elements elements, is read in linear time"
-ending=ply
-grows properties $((elements / 4)) IN out.ply
-ending=obj
-inputs elements $elements e.ply
+grows ply_properties $((elements / 4)) IN out.ply
+inputs ply_elements $elements e.ply
 within 6 150 e.ply out.ply
 exits 0
 
 scene "an OBJ of $materials materials makes a document of as many primitives"
-inputs usemtl $materials m.obj
+inputs obj_materials $materials m.obj
 within 12 150 -q m.obj m.glb
 exits 0
 is "$(gltf m.glb 'g.meshes[0].primitives.length')" $materials
@@ -226,7 +226,7 @@ is "$(gltf m.glb 'g.meshes[0].primitives.length')" $materials
 [ $(($(stat -c %s m.glb) / $(stat -c %s m.obj))) -lt 36 ] || wrong "$(stat -c %s m.glb) bytes"
 
 scene "a check of $blocks primitives takes linear time"
-inputs usemtl $blocks checked.obj
+inputs obj_materials $blocks checked.obj
 run -q --only=all checked.obj checked.glb
 within 4 150 -q --check checked.glb
 exits 0
@@ -243,13 +243,13 @@ within 5 300 extras.gltf out.gltf
 exits 0
 
 scene "an OBJ whose $blocks materials have two images each"
-python3 "$ROOT/tests/support/cost_inputs.py" images $blocks i.obj # and i.obj.mtl
+python3 "$ROOT/tests/support/inputs.py" mtl_missing_images $blocks i.obj # and i.mtl
 within 4 400 -q i.obj i.gltf
 exits 0
 is "$(gltf i.gltf 'g.materials.length')" $blocks
 
 scene "images that are not written are decoded once, and not made"
-python3 "$ROOT/tests/support/cost_inputs.py" bumps 40 b.obj
+python3 "$ROOT/tests/support/inputs.py" mtl_bumps 40 b.obj
 for words in --check "--dry-run --report=r.json"; do
 	# shellcheck disable=SC2086
 	within 2 150 -q --fail-on=never $words b.obj $([ "$words" = --check ] || echo out.glb)
@@ -258,7 +258,7 @@ done
 is "$(value r.json '[f["code"] for f in r["files"][0]["findings"]].count("IMAGE_CONVERTED")')" 40
 
 scene "1 500 primitives over one set of accessors are judged and drawn once"
-inputs same 1500 s.glb
+inputs gltf_same_grid 1500 s.glb
 within 15 300 --check --report=s.html --only=all --fail-on=never s.glb
 exits 0
 [ "$(stat -c %s s.html)" -lt 2000000 ] || wrong "a page of $(stat -c %s s.html) bytes"
@@ -266,29 +266,29 @@ within 15 300 --check --report=s.json --only=all --fail-on=never s.glb
 is "$(value s.json 'len(r["files"][0]["meshes"])')" 1500
 is "$(value s.json '{m["same_as"] for m in r["files"][0]["meshes"][1:]}')" '{0}'
 is "$(value s.json '{m["faces"] for m in r["files"][0]["meshes"]}')" '{43218}'
-is "$(value s.json '{(f["mesh"], f["alike"]) for f in r["files"][0]["findings"] if f["code"] != "IMAGE_MISSING"}')" '{(0, 1500)}'
+is "$(value s.json '{(f["mesh"], f["alike"]) for f in r["files"][0]["findings"] if f["code"] != "NMAP_CONSTANT"}')" '{(0, 1500)}'
 
 scene "1 500 primitives over one set of accessors are one part of a join"
-inputs same 1500 s.glb
+inputs gltf_same_grid 1500 s.glb
 within 5 300 -q --across=mesh --only=all s.glb out.glb
 exits 0
 [ "$(stat -c %s out.glb)" -lt 3000000 ] || wrong "$(stat -c %s out.glb) bytes"
 
 scene "primitives of one geometry whose material needs no tangents are judged once, too"
-inputs same 1500 s.glb
+inputs gltf_same_grid 1500 s.glb
 LC_ALL=C sed 's/"normalTexture"/"normalTextur_"/' s.glb >bare.glb
 within 15 300 --check --report=s.json --fail-on=never bare.glb
-is "$(value s.json '{f["alike"] for f in r["files"][0]["findings"] if f["code"] != "IMAGE_MISSING"} - {1500}')" 'set()'
+is "$(value s.json '{f["alike"] for f in r["files"][0]["findings"]} - {1500}')" 'set()'
 
 scene "$windows primitives with different parts of one index array are solved some at a time"
-inputs windows "$windows" w.glb
+inputs gltf_long_windows "$windows" w.glb
 within 16 800 -q --only=all w.glb out.glb
 exits 0
 is "$(gltf out.glb 'g.meshes[0].primitives.length')" "$windows"
 rm out.glb
 
 scene "what is solved some at a time is what is solved at once"
-inputs windows 40 w.glb 30
+inputs gltf_long_windows 40 w.glb 30
 run -q --only=all w.glb some.glb
 exits 0
 run -q --only=all --report=w.json --fail-on=never w.glb once.glb
@@ -299,7 +299,7 @@ same some.glb again.glb
 
 # one takes 20 MB: each of 5 000 that took all vertices would ask for 800 MB
 scene "5 000 primitives over one buffer cost what they use"
-inputs ranges 5000 r.glb
+inputs gltf_ranges 5000 r.glb
 for words in "" "--check" "--across=mesh" "--verify"; do
 	rm -f out.glb
 	# shellcheck disable=SC2086
@@ -311,7 +311,7 @@ run -q --only=all --output-format=ply -o out.ply r.glb
 rm -f out.glb out.ply
 
 scene "$parts primitives with accessors of their own"
-inputs scene "$parts" p.glb
+inputs gltf_grids "$parts" p.glb
 within 4 190 -q p.glb out.glb
 exits 0
 is "$(gltf out.glb 'g.accessors.length')" $((5 * parts))
@@ -320,7 +320,7 @@ exits 0
 rm out.glb
 
 scene "$((parts / 2)) primitives whose vertices are split"
-inputs scene $((parts / 2)) p.glb 5
+inputs gltf_grids $((parts / 2)) p.glb 5
 within 4 210 -q p.glb out.glb
 exits 0
 is "$(gltf out.glb 'g.accessors.length')" $((5 * parts / 2))
@@ -328,19 +328,19 @@ is "$(gltf out.glb 'g.accessors[0].count > 36')" true
 rm out.glb
 
 scene "the page of a long strip grows its sample in linear time"
-inputs strip $strip strip.obj
+inputs obj_strip $strip strip.obj
 within 12 600 --check --report=s.html --fail-on=never strip.obj
 exits 0
 
 scene "a picture of an index takes time for rows, however many triangles lie on a pixel"
-inputs tiles "$faces" t.obj
+inputs obj_tiles "$faces" t.obj
 within 2 300 -q --check --report=pages/ --fail-on=never t.obj
 exits 0
 
 scene "findings are looked up in a baseline in linear time, of the file's name and of another"
 for size in 1 2 4; do
-	python3 "$ROOT/tests/support/cost_inputs.py" objects $((size * faces / 32)) $size.obj
-	python3 "$ROOT/tests/support/cost_inputs.py" known $((size * faces)) $size.obj.json
+	python3 "$ROOT/tests/support/inputs.py" option_known $((size * faces)) $size.obj
+	python3 "$ROOT/tests/support/inputs.py" obj_quads_of_objects $((size * faces / 32)) $size.obj
 	ln $size.obj other.$size.obj
 	ln $size.obj.json other.$size.obj.json
 done
@@ -349,7 +349,7 @@ for name in "" other.; do
 		"$NMTAN" -q --check --fail-on=never --baseline=IN.json IN >"$WORK/cost.txt" 2>&1 || wrong "$name: $(cat "$WORK/cost.txt")"
 done
 
-for kind in hub edge patches; do
+for kind in obj_hub obj_edge obj_patches; do
 	scene "$kind: $faces faces that all meet, or none, are judged in nearly linear time, on any number of threads alike"
 	inputs $kind $faces c.obj
 	for threads in 1 3; do

@@ -14,7 +14,7 @@ case $NMTAN in
 esac
 
 scene "triangles are counted before the work, once for each primitive that has them"
-python3 "$ROOT/tests/support/cost_inputs.py" same 100 s.glb
+python3 "$ROOT/tests/support/inputs.py" gltf_same_grid 100 s.glb
 run --only=all --max-triangles=4000000 s.glb out.glb
 refused "s.glb: 4321800 triangles, --max-triangles is 4000000" s.glb
 run -q --only=all --max-triangles=4321800 s.glb out.glb
@@ -33,7 +33,7 @@ run --max-triangles=1 --only=all twice.gltf out.ply
 [ "$(grep -oE '[0-9]+ triangles' "$WORK/err.txt" | grep -oE '[0-9]+')" -gt "${first%% *}" ] || wrong "the instance is not counted"
 
 scene "a morph target that is baked has the triangles once more"
-python3 "$ROOT/tests/support/cost_inputs.py" targets 100 t.glb 20
+python3 "$ROOT/tests/support/inputs.py" gltf_targets_of_grid 100 t.glb 20
 run --max-triangles=80799 t.glb out.glb
 refused "t.glb: 80800 triangles with those of morph targets, --max-triangles is 80799" t.glb
 for words in --max-triangles=80800 "--max-triangles=800 --morph=keep" "--max-triangles=800 --morph=drop" \
@@ -54,12 +54,12 @@ exists out/quad.glb
 is "$(python3 -c 'import json; print(sorted(json.loads(line)["exit_code"] for line in open("m.jsonl")))')" "[0, 7]"
 
 scene "pixels of images are counted before any is decoded"
-python3 "$ROOT/tests/support/cost_inputs.py" bumps 3 b.obj 256
+python3 "$ROOT/tests/support/inputs.py" mtl_bumps 3 b.obj 256
 # each is looked at to see whether it is grey, and then decoded for each result
 run --max-pixels=262143 b.obj out.gltf
-refused "b.obj: images of 262144 pixels are to be decoded and made, --max-pixels is 262143" b.obj b.obj.mtl b.obj.png
+refused "b.obj: images of 262144 pixels are to be decoded and made, --max-pixels is 262143" b.obj b.mtl b.png
 run --max-pixels=65535 b.obj out.gltf
-refused "images of 65536 pixels" b.obj b.obj.mtl b.obj.png
+refused "images of 65536 pixels" b.obj b.mtl b.png
 run -q --max-pixels=262144 b.obj out.gltf
 exits 0
 rm -r out.*
@@ -119,15 +119,15 @@ run --textures=png many.jpg.obj out.gltf
 says "JPEG: more than 500 scans"
 
 scene "500 maps of 4096 x 4096 are not too many, 60 times as many are"
-python3 "$ROOT/tests/support/cost_inputs.py" bumps 500 b.obj
+python3 "$ROOT/tests/support/inputs.py" mtl_bumps 500 b.obj
 run --max-seconds=0.1 b.obj out.glb
-refused "not done after" b.obj b.obj.mtl b.obj.png
-python3 "$ROOT/tests/support/cost_inputs.py" bumps 30000 b.obj
+refused "not done after" b.obj b.mtl b.png
+python3 "$ROOT/tests/support/inputs.py" mtl_bumps 30000 b.obj
 run b.obj out.glb
-refused "are to be decoded and made, --max-pixels is 17179869184" b.obj b.obj.mtl b.obj.png
+refused "are to be decoded and made, --max-pixels is 17179869184" b.obj b.mtl b.png
 
 scene "a run that is late ends, without output, temporary files and report"
-python3 "$ROOT/tests/support/cost_inputs.py" windows 200 w.glb
+python3 "$ROOT/tests/support/inputs.py" gltf_long_windows 200 w.glb
 for words in "" --verify --bitangents; do
 	# shellcheck disable=SC2086
 	run --only=all --max-seconds=0.05 $words w.glb out.glb
@@ -174,7 +174,7 @@ run -q quad.obj want.glb
 same out.glb want.glb
 
 scene "one that is late leaves the others"
-python3 "$ROOT/tests/support/cost_inputs.py" windows 1000 w.glb
+python3 "$ROOT/tests/support/inputs.py" gltf_long_windows 1000 w.glb
 cp "$data/quad.obj" .
 # On a busy machine the quad may be late, too; the other takes two seconds of the fastest processor.
 for limit in 0.05 0.2 0.8; do
@@ -200,7 +200,7 @@ only plates.gltf plates.bin bumps.png good.glb
 # A sanitizer's shadow memory is beyond any limit.
 if ! $sanitized; then
 	scene "memory beyond the limit is refused"
-	python3 "$ROOT/tests/support/cost_inputs.py" windows 200 w.glb
+	python3 "$ROOT/tests/support/inputs.py" gltf_long_windows 200 w.glb
 	run --only=all --max-memory=24M w.glb out.glb
 	refused "w.glb: --max-memory=24M is not enough: 7" w.glb
 	says "M is the most that such a file needs: try half of it first"

@@ -536,17 +536,17 @@ same shared.bin out.bin
 
 scene "a set may have more files than a process may have open, and appears whole or not at all"
 cp "$data/quad.obj" .
-python3 "$ROOT/tests/support/cost_inputs.py" colors 120 many.obj
+python3 "$ROOT/tests/support/inputs.py" mtl_tga_images 120 many.obj
 mkdir nothing
 for words in "many.obj many.gltf" "--images=copy many.gltf copies/many.gltf" "--images=copy --existing=replace many.gltf copies/many.gltf"; do
 	mkdir -p copies
 	# shellcheck disable=SC2086
 	(ulimit -n 64 && "$NMTAN" -q $words) || wrong "$words: exit code $?"
-	[ "$(ls -A ${words##* } "$(dirname "${words##* }")" | grep -c 'many\.obj\.[0-9]*\.png$')" -ge 120 ] || wrong "$words: $(ls -A copies | wc -l) files"
+	[ "$(ls -A ${words##* } "$(dirname "${words##* }")" | grep -c 'many\.[0-9]*\.png$')" -ge 120 ] || wrong "$words: $(ls -A copies | wc -l) files"
 done
 (ulimit -n 64 && for i in $(seq 120); do ln quad.obj $i.obj; done && "$NMTAN" -q --check --report=pages/ [0-9]*.obj) || wrong "exit code $?"
 is "$(find pages -name '*.obj.html' | wc -l)" 120
-python3 "$ROOT/tests/support/cost_inputs.py" colors 40 "$PWD/forty.obj"
+python3 "$ROOT/tests/support/inputs.py" mtl_tga_images 40 "$PWD/forty.obj"
 other= stride=$((7 * stride)) sweep kill nothing o.gltf -q -j1 "$PWD/forty.obj" o.gltf
 other= stride=$((7 * stride)) sweep fail nothing o.gltf -q -j1 "$PWD/forty.obj" o.gltf
 

@@ -14,7 +14,7 @@ make_inputs() {
 	cp "$ROOT"/data/mirrored_cube.* "$ROOT"/data/bumps.png "$ROOT"/data/quad.obj "$ROOT"/data/quad_wedge.ply \
 		"$ROOT"/data/plates.* "$ROOT"/data/morph.gltf "$ROOT"/data/skin.gltf "$ROOT"/data/quantized.gltf \
 		"$ROOT"/data/sparse.gltf .
-	python3 "$ROOT/tests/support/cost_inputs.py" windows 20 windows.glb 12 || return 1
+	python3 "$ROOT/tests/support/inputs.py" gltf_long_windows 20 windows.glb 12 || return 1
 	printf 'quad.obj\nplates.glb\n' >list
 	manifold_gltf manifold || return 1
 	"$NMTAN" -q --update=content plates.gltf current.gltf || return 1
