@@ -139,7 +139,7 @@ def tests_of(path):
     name = lambda p: os.path.basename(p)[5:-3]
     rank = lambda p: min([k for k, word in enumerate(words) if word == name(p) or word in name(p).split('_')], default=99)
     outside = sorted([p for p in scripts if rank(p) < 99], key=rank)
-    units = [p for p in programs if p.split('tests/')[1].split('/')[-2] in [parts[0]] + UNITS.get(parts[0], [])]
+    units = [p for p in programs if re.search(r'tests/(?:unit/)?(\w+)/', p)[1] in [parts[0]] + UNITS.get(parts[0], [])]
     units.sort(key=lambda p: not p.endswith('test_' + stem))
     return outside, units, [p for p in programs + scripts if p not in outside + units]
 
