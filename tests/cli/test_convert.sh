@@ -410,16 +410,20 @@ if command -v script >/dev/null 2>&1; then
 	grep -q $'\033' typed && wrong "colours although NO_COLOR is set"
 fi
 
-scene "a colour that is not finite is no colour of a PLY"
-gltf new nan 'const attributes = {POSITION: add("VEC3", 5126, [0, 0, 0, 1, 0, 0, 0, 1, 0]),
-		TEXCOORD_0: add("VEC2", 5126, [0, 0, 1, 0, 0, 1]), COLOR_0: add("VEC4", 5126, [...Array(9).fill(1), NaN, 1, 1])};
-	g.meshes = [{primitives: [{attributes}]}];
-	g.nodes = [{mesh: 0}]'
-run nan.gltf out.ply
-exits 3
-says "the colour of vertex 2 is not finite"
-run --only=all nan.gltf out.glb
-exits 0
+scene "what is not finite of a glTF is in no PLY"
+for what in COLOR_0:colour "TEXCOORD_0:texture coordinate" NORMAL:normal; do
+	gltf new nan "const broken = '${what%:*}';" 'const values = {POSITION: [0, 0, 0, 1, 0, 0, 0, 1, 0], TEXCOORD_0: [0, 0, 1, 0, 0, 1],
+			COLOR_0: Array(12).fill(1), NORMAL: [0, 0, 1, 0, 0, 1, 0, 0, 1]}, attributes = {};
+		values[broken][values[broken].length - 1] = NaN;
+		for (const name in values) attributes[name] = add("VEC" + values[name].length / 3, 5126, values[name]);
+		g.meshes = [{primitives: [{attributes}]}];
+		g.nodes = [{mesh: 0}]'
+	run nan.gltf out.ply
+	exits 3
+	says "the ${what#*:} of vertex 2 is not finite"
+	run --only=all nan.gltf out.glb
+	exits 0
+done
 
 scene "what PLY cannot hold of a glTF is told, each kind with its number"
 python3 -c 'import json, sys
