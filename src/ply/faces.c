@@ -208,7 +208,7 @@ static nt_status expand_strips(ply_faces *f)
 				begin = i + 1;
 			if (*c == NT_NONE || i < begin + 2 || c[0] == c[-1] || c[0] == c[-2] || c[-1] == c[-2])
 				continue;
-			const bool odd = (i - begin) & 1;
+			const bool odd = (i ^ begin) & 1;
 			*to++ = c[odd ? -1 : -2];
 			*to++ = c[odd ? -2 : -1];
 			*to++ = c[0];

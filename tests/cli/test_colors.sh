@@ -17,14 +17,6 @@ valid fold.glb
 is "$(gltf fold.glb 'g.accessors[g.meshes[0].primitives[0].attributes.COLOR_0].componentType')" 5126
 is "$(gltf fold.glb "$colors")" "[[1,0,0,1],[0,0.5029,0,1],[0,0,1,0.5],[1,1,1,1],[1,0,0,1],[0,0,1,0.5]]"
 
-scene "ZBrush's colours in comments are the same colours"
-fold "" "" "" "" "#MRGB ffff0000ff00bc00000000ffffffffff"
-run --verify fold.obj fold.glb
-exits 0
-is "$(gltf fold.glb "$colors")" "[[1,0,0,1],[0,0.5029,0,1],[0,0,1,1],[1,1,1,1],[1,0,0,1],[0,0,1,1]]"
-run --check --fail-on=warning fold.obj
-is "$(grep -c COLORS_DOUBTFUL "$WORK/out.txt")" 0
-
 scene "a PLY has the bytes that an OBJ had, and gives them back"
 fold "" "" "" "" "#MRGB ffff0000ff00bc0000010203ffffffff"
 run fold.obj fold.ply
@@ -46,13 +38,5 @@ is "$(gltf back.glb "$colors.slice(0, 3)")" "[[1,0,0,1],[0,0.5029,0,1],[0.0003,0
 run back.glb again.ply
 exits 0
 is "$(grep -ac '^property uchar red' again.ply)" 1
-
-scene "a colour that is not finite is white, and costs no more than itself"
-printf 'v %s\n' "0 0 0 1 0 0" "1 0 0 nan 0 0" "0 1 0 0 0 1 inf" "1 1 0 0 0 1" >nan.obj
-printf 'f %s\n' "1 2 3" "2 4 3" >>nan.obj
-run nan.obj nan.glb
-exits 0
-says "nan.obj:2: warning: colours of vertices are not what they should be: 2 of v not finite [COLORS_DOUBTFUL]"
-is "$(gltf nan.glb "$colors")" "[[1,0,0,1],[1,1,1,1],[1,1,1,1],[0,0,1,1]]"
 
 done_testing

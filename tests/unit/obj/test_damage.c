@@ -6,25 +6,6 @@
 #include "obj_file.h"
 #include "obj/parts.h"
 
-/* A line of a few NUL, which ZBrush writes, is counted; a hole in a file is none. */
-TEST(lines_of_nul_alone_are_passed_over)
-{
-	static const char text[] = TRIANGLE "\0\nf 1 2 3\n\0 \0\r\n";
-	char hole[4096 + sizeof text] = {0};
-	reading r;
-	open_bytes(&r, text, sizeof text - 1, 1);
-	assert_int_equal(r.status, NT_OK);
-	assert_int_equal(r.scene.findings.count, 1);
-	assert_int_equal(r.scene.findings.items[0].code, NT_CODE_STATEMENT_IGNORED);
-	assert_int_equal(r.scene.findings.items[0].count, 2);
-	assert_int_equal(r.scene.findings.items[0].place.line, 4);
-	close_reading(&r);
-	memcpy(hole + 4096, "\n" TRIANGLE "f 1 2 3\n", sizeof "\n" TRIANGLE "f 1 2 3\n");
-	open_bytes(&r, hole, 4096 + strlen("\n" TRIANGLE "f 1 2 3\n"), 1);
-	assert_int_equal(r.status, NT_ERROR_INPUT);
-	close_reading(&r);
-}
-
 /* Cut anywhere, the file it is read or refused with a line; the sanitizers watch. */
 TEST(every_prefix_is_survived)
 {

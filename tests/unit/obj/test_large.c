@@ -1,13 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * The OBJ reader against a naive one: strtok, strtof and strtol line by line, which keeps what every
- * corner of every polygon is. Both must agree corner by corner, on a generated file of several chunks for
- * every number of threads, and on the public models where they are.
+ * corner of every polygon is. Both must agree corner by corner, on a generated file of several chunks.
  */
 #include "obj_file.h"
-#include <dirent.h>
-#include <math.h>
-#include "file/input.h"
 
 /* ---- the naive reader ---- */
 
@@ -194,11 +190,11 @@ static size_t count_distinct(const naive *x)
 	return total;
 }
 
-static void assert_agrees(const char *bytes, size_t size, unsigned threads)
+static void assert_agrees(const char *bytes, size_t size)
 {
 	reading r;
 	naive x;
-	open_bytes(&r, bytes, size, threads);
+	open_bytes(&r, bytes, size, 1);
 	if (r.status)
 		print_message("line %zu: %s\n", r.error.place.line, r.error.message);
 	assert_int_equal(r.status, NT_OK);
@@ -286,7 +282,7 @@ TEST(generated_file_agrees_with_the_naive_reader)
 	size_t size;
 	char *text = generate(&size);
 	assert_true(size > 3u << 20);
-	assert_agrees(text, size, 1);
+	assert_agrees(text, size);
 	free(text);
 }
 
@@ -421,54 +417,4 @@ TEST(lines_longer_than_a_chunk)
 	assert_int_equal(r.error.place.line, 4 + 1 + 400000 + 1);
 	close_reading(&r);
 	free(text);
-}
-
-/* ---- the models ---- */
-
-/* inf_nan has no finite position, test_lines has no face: these are refused. */
-static nt_status refusal(const char *name)
-{
-	if (strcmp(name, "inf_nan.obj") == 0)
-		return NT_ERROR_INPUT;
-	return strcmp(name, "test_lines.obj") == 0 ? NT_ERROR_UNSUPPORTED : NT_OK;
-}
-
-/* Refers to normals that it does not have: the naive reader does not know that they are passed over. */
-static bool lacks_normals(const char *name)
-{
-	return strcmp(name, "test_wrong_attribute_mapping.obj") == 0;
-}
-
-TEST(public_models_agree_with_the_naive_reader)
-{
-	static const char folder[] = "../shared/models/obj";
-	DIR *dir = opendir(folder);
-	if (!dir) {
-		print_message("%s is not there: skipped\n", folder);
-		skip();
-	}
-	int count = 0;
-	for (const struct dirent *entry; (entry = readdir(dir));) {
-		const size_t length = strlen(entry->d_name);
-		if (length < 4 || strcmp(entry->d_name + length - 4, ".obj") != 0)
-			continue;
-		char path[400];
-		nt_error error;
-		nt_file file;
-		snprintf(path, sizeof path, "%s/%s", folder, entry->d_name);
-		assert_int_equal(nt_file_open(&file, path, NT_NAMED_BY_USER, &error), NT_OK);
-		const char *bytes = (const char *)file.data;
-		if (refusal(entry->d_name)) {
-			reading r;
-			open_bytes(&r, bytes, file.size, 2);
-			assert_int_equal(r.status, refusal(entry->d_name));
-			close_reading(&r);
-		} else if (!lacks_normals(entry->d_name)) {
-			assert_agrees(bytes, file.size, 2);
-		}
-		nt_file_close(&file);
-		count++;
-	}
-	closedir(dir);
-	assert_true(count > 10);
 }
