@@ -129,6 +129,30 @@ static inline void nt_draco_block_free(nt_draco_block *block)
 nt_status nt_draco_encode(const nt_draco_mesh *mesh, nt_draco_block *block, nt_error *error);
 
 /*
+ * A bound of the memory that nt_draco_encode() takes beside the mesh. Bytes of a corner: 4 in the faces that Draco
+ * gets, those that are expected, those that it decodes and those that are compared, and 8 in CornerTable or in the
+ * symbols of sequential faces. A component: 4 times its own for the same reason, 4 of Draco's integers, 4 of its
+ * symbols and the block. An attribute: 8 a point in the maps of what is encoded and decoded; with edgebreaker, whose
+ * decoder has them too, those of MeshAttributeCornerTable and MeshAttributeIndicesEncodingData: 12 a corner and 24 a
+ * point. And once four bytes for each number that its entropy coder may meet, whose sign costs a bit.
+ */
+static inline uint64_t nt_draco_encoding_bytes(const nt_draco_mesh *mesh)
+{
+	const bool has_tables = mesh->method == NT_DRACO_EDGEBREAKER;
+	uint64_t corner = 24, point = 0, numbers = 0;
+	for (size_t i = 0; i < mesh->attribute_count; i++) {
+		const nt_draco_attribute *a = &mesh->attributes[i];
+		const size_t size = nt_component_size(a->component_type);
+		const int bits = a->component_type == NT_GLTF_FLOAT ? a->quantization.bits
+			: size == 4 ? 24 : 8 * (int)size;
+		corner += has_tables ? 12 : 0;
+		point += (has_tables ? 32 : 8) + (uint64_t)a->components * (4 * size + 8);
+		numbers = numbers >> bits > 1 ? numbers : (uint64_t)2 << bits;
+	}
+	return 3 * corner * mesh->face_count + point * mesh->point_count + 4 * numbers;
+}
+
+/*
  * The values that a decoder will have of the quantized attributes of a mesh once it is encoded. They depend neither on
  * the method nor on the other attributes.
  *

@@ -10,9 +10,6 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 
-/* Memory that Draco takes for each corner and vertex of ordinary meshes. */
-enum { ELEMENT_BYTES = 100 };
-
 /* ---- one ---- */
 
 /* How many faces edgebreaker would drop: two corners at one position, as Draco gets them. A block that is decoded has
@@ -47,17 +44,31 @@ static bool may_drop_faces(const nt_gltf_recoding *r)
 	return r->extension && r->options->draco == NT_DRACO_KEEP && !nt_json_find(attributes, "JOINTS_0");
 }
 
-/* Notes why edgebreaker, which is asked for or which the source has, is not taken. */
-static nt_draco_method wanted_method(nt_gltf_recoding *r)
+/* Draco's own default. With edgebreaker, a torus of 245 000 triangles takes at level 4 0.85 of the bytes in 1.07 of the
+ * time, level 8 twice the bytes in 0.69; with many seams level 6 makes up to a quarter more. */
+enum { DRACO_SPEED = 5 };
+
+/* The mesh, to be encoded by the method that is asked for or that the source has. */
+static nt_draco_mesh mesh_of(const nt_gltf_recoding *r)
 {
-	const nt_draco_method wanted = r->options->draco == NT_DRACO_AS_SEQUENTIAL ? NT_DRACO_SEQUENTIAL
-		: r->options->draco == NT_DRACO_AS_EDGEBREAKER ? NT_DRACO_EDGEBREAKER : r->source->method;
-	if (wanted == NT_DRACO_SEQUENTIAL)
-		return wanted;
-	r->sequential_instead = r->outside;
+	return (nt_draco_mesh){
+		.method = r->options->draco == NT_DRACO_AS_SEQUENTIAL ? NT_DRACO_SEQUENTIAL
+			: r->options->draco == NT_DRACO_AS_EDGEBREAKER ? NT_DRACO_EDGEBREAKER : r->source->method,
+		.point_count = r->vertices->new_count,
+		.face_count = r->mesh->corner_count / 3,
+		.indices = r->vertices->users[0].numbers,
+		.attributes = r->attributes,
+		.attribute_count = r->attribute_count,
+		.speed = DRACO_SPEED,
+	};
+}
+
+/* Whether edgebreaker cannot be taken; notes why. */
+static bool needs_sequential(nt_gltf_recoding *r)
+{
 	r->faces_without_area = r->outside ? 0 : count_degenerate_faces(r);
-	r->sequential_instead |= r->faces_without_area > 0 && !may_drop_faces(r);
-	return r->sequential_instead ? NT_DRACO_SEQUENTIAL : wanted;
+	r->sequential_instead = r->outside || (r->faces_without_area > 0 && !may_drop_faces(r));
+	return r->sequential_instead;
 }
 
 /* Whether elements outside of the block still fit the points in it. */
@@ -71,22 +82,12 @@ static bool order_is_kept(const nt_gltf_recoding *r)
 	return true;
 }
 
-/* Draco's own default. With edgebreaker, a torus of 245 000 triangles takes at level 4 0.85 of the bytes in 1.07 of the
- * time, level 8 twice the bytes in 0.69; with many seams level 6 makes up to a quarter more. */
-enum { DRACO_SPEED = 5 };
-
 /* Edgebreaker does not give every mesh back; the other method has nothing to lose. */
 static nt_status encode(nt_gltf_recoding *r, nt_error *error)
 {
-	nt_draco_mesh mesh = {
-		.method = wanted_method(r),
-		.point_count = r->vertices->new_count,
-		.face_count = r->mesh->corner_count / 3,
-		.indices = r->vertices->users[0].numbers,
-		.attributes = r->attributes,
-		.attribute_count = r->attribute_count,
-		.speed = DRACO_SPEED,
-	};
+	nt_draco_mesh mesh = mesh_of(r);
+	if (mesh.method == NT_DRACO_EDGEBREAKER && needs_sequential(r))
+		mesh.method = NT_DRACO_SEQUENTIAL;
 	nt_status status = nt_draco_encode(&mesh, &r->block, error);
 	if (status && !nt_gltf_is_beside_mesh(status) && mesh.method != NT_DRACO_SEQUENTIAL) {
 		mesh.method = NT_DRACO_SEQUENTIAL;
@@ -119,7 +120,8 @@ nt_status nt_gltf_draco_encode(nt_gltf_recoding *r, nt_error *error)
 
 static uint64_t need_of(const nt_gltf_recoding *r)
 {
-	return ELEMENT_BYTES * ((uint64_t)r->mesh->corner_count + r->vertices->new_count);
+	const nt_draco_mesh mesh = mesh_of(r);
+	return nt_draco_encoding_bytes(&mesh);
 }
 
 static int compare_needs(const void *a, const void *b)

@@ -2,6 +2,10 @@
 #include "test.h"
 #include <math.h>
 #include <stdio.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 #include "ext/draco.h"
 
 #define COUNT(array) (sizeof(array) / sizeof *(array))
@@ -572,6 +576,72 @@ TEST(metadata_is_read_over)
 	assert_non_null(strstr(error.message, "its head is cut off"));
 	free(bytes);
 	nt_draco_block_free(&plain);
+}
+
+/* The peak of a process of its own that encodes so many faces and attributes of a mesh. */
+static size_t peak_of(nt_draco_mesh mesh, size_t face_count, size_t attribute_count)
+{
+	int status;
+	struct rusage usage;
+	const pid_t child = fork();
+	assert_true(child >= 0);
+	if (child == 0) {
+		prctl(PR_SET_THP_DISABLE, 1, 0, 0, 0);
+		mesh.face_count = face_count;
+		mesh.attribute_count = attribute_count;
+		encoded(&mesh);
+		_exit(0);
+	}
+	assert_int_equal(wait4(child, &status, 0, &usage), child);
+	assert_int_equal(status, 0);
+	return (size_t)usage.ru_maxrss * 1024;
+}
+
+/* As few attributes as glTF wants, or as many as it has names for, over a grid: its vertices are shared, or all corners
+ * differ. Sanitizers need memory of their own. */
+TEST(the_bound_of_the_memory_for_encoding_holds)
+{
+	enum { ROW = 64, CORNERS = 6 * (ROW - 1) * (ROW - 1), MOST = 30, VALUES = 4 * CORNERS + MOST };
+	static float values[VALUES];
+	static uint32_t integers[VALUES], indices[2][CORNERS];
+	static const struct {
+		nt_draco_attribute others;
+		size_t count;
+	} rows[] = {{{.components = 1}, 1}, {{.component_type = NT_GLTF_FLOAT, .components = 4}, 4},
+		{{.component_type = NT_GLTF_FLOAT, .components = 4, .quantization.bits = 12}, MOST},
+		{{.component_type = NT_GLTF_UBYTE, .components = 1}, MOST},
+		{{.component_type = NT_GLTF_UINT, .components = 2}, 2}};
+	for (uint32_t i = 0, seed = 1; i < VALUES; i++) {
+		integers[i] = (seed = seed * 1664525 + 1013904223) >> 8; /* 24 bits are the most that are encoded */
+		values[i] = (float)integers[i];
+	}
+	for (uint32_t c = 0; c < CORNERS; c++) {
+		static const uint32_t quad[] = {0, 1, ROW, 1, ROW + 1, ROW};
+		indices[0][c] = c / 6 / (ROW - 1) * ROW + c / 6 % (ROW - 1) + quad[c % 6];
+		indices[1][c] = c;
+	}
+	for (size_t i = 0; i < 4 * COUNT(rows); i++) {
+		nt_draco_attribute attributes[MOST];
+		const size_t own = i / 2 % 2, count = rows[i / 4].count;
+		for (size_t k = 0; k < count; k++) {
+			attributes[k] = rows[i / 4].others;
+			attributes[k].unique_id = (uint32_t)k;
+			attributes[k].kind = NT_DRACO_GENERIC;
+			attributes[k].data = attributes[k].component_type == NT_GLTF_FLOAT ? (const void *)(values + k)
+				: integers + k;
+		}
+		attributes[0] = (nt_draco_attribute){.component_type = NT_GLTF_FLOAT, .components = 3,
+			.quantization.bits = 14, .data = values};
+		const nt_draco_mesh mesh = {.method = (nt_draco_method)(i % 2), .face_count = CORNERS / 3, .speed = 5,
+			.point_count = own ? CORNERS : ROW * ROW, .indices = indices[own],
+			.attributes = attributes, .attribute_count = count};
+		const uint64_t bound = nt_draco_encoding_bytes(&mesh);
+		const size_t peak = peak_of(mesh, mesh.face_count, count) - peak_of(mesh, 2, 1);
+		print_message("%zu: %zu bytes, the bound is %.2f of it\n", i, peak, (double)bound / (double)peak);
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+		assert_in_range(bound, peak, 2 * peak + (1 << 20));
+#endif
+	}
 }
 
 TEST(mutated_streams_do_no_harm)
