@@ -71,7 +71,6 @@ static nt_status run_alone(progress *p, nt_job *job, nt_settings *settings)
 	nt_gate_enter(&p->gate, UINT64_MAX);
 	nt_summary_free(&job->outcome->summary);
 	job->outcome->summary = (nt_summary){0};
-	nt_error_clear(&job->outcome->error);
 	const nt_status status = run(p, job, settings);
 	nt_gate_leave(&p->gate, UINT64_MAX);
 	return status;

@@ -130,22 +130,23 @@ nt_status nt_sink_copy(nt_sink *sink, const nt_file *from, size_t offset, size_t
 	}
 	if (size < COPIED_BYTES || !from->mapped || sink->dry)
 		return nt_sink_write(sink, from->data + offset, size, error);
-	nt_status status = nt_sink_flush(sink, error);
-	for (size_t left = size; left && !status;) {
-		const size_t part = left < NT_SINK_BUFFER_BYTES ? left : NT_SINK_BUFFER_BYTES;
+	while (size) {
+		const nt_status status = nt_sink_flush(sink, error);
+		if (status)
+			return status;
+		const size_t part = size < NT_SINK_BUFFER_BYTES ? size : NT_SINK_BUFFER_BYTES;
 		const ssize_t count = pread(from->fd, sink->buffer, part, (off_t)offset);
 		if (count <= 0)
-			return nt_sink_write(sink, from->data + offset, left, error);
+			return nt_sink_write(sink, from->data + offset, size, error);
 		if (sink->digest)
 			nt_digest_add(sink->digest, sink->buffer, (size_t)count);
 		sink->size += (size_t)count;
 		sink->used = (size_t)count;
-		status = nt_sink_flush(sink, error);
 		nt_file_release(from, offset, (size_t)count);
 		offset += (size_t)count;
-		left -= (size_t)count;
+		size -= (size_t)count;
 	}
-	return status;
+	return NT_OK;
 }
 
 nt_status nt_sink_finish(nt_sink *sink, bool sync, nt_error *error)

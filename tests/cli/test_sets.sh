@@ -533,6 +533,7 @@ NT_CALLS_CLONE=1 NT_CALLS_COUNT=made run_under_calls -q --only=all in.gltf share
 exits 0
 is "$(grep -c ioctl made)" 1
 same shared.bin out.bin
+is "$(gltf shared.gltf 'g.buffers[0].extras')" "$(gltf out.gltf 'g.buffers[0].extras')"
 
 scene "a set may have more files than a process may have open, and appears whole or not at all"
 cp "$data/quad.obj" .

@@ -26,12 +26,13 @@ TEST(data_uris_of_any_kind_are_decoded)
 
 TEST(broken_data_uris_are_refused)
 {
-	static const char *const broken[] = {"data:x;base64", "data:;base64,AA*A", "data:;base64,AAAAA",
+	static const char *const broken[] = {"data:", "data:x;base64", "data:;base64,AA*A", "data:;base64,AAAAA",
 		"data:;base64,=AAA", "data:;base64,AA===="};
 	for (size_t i = 0; i < sizeof broken / sizeof *broken; i++) {
 		unsigned char *bytes;
 		size_t size;
 		nt_error error;
+		assert_true(nt_uri_is_data(broken[i], strlen(broken[i])));
 		assert_int_equal(nt_uri_decode_data(broken[i], strlen(broken[i]), &bytes, &size, &error),
 			NT_ERROR_INPUT);
 		assert_null(bytes);
