@@ -16,7 +16,8 @@
 #include "nmtan.h"
 
 static atomic_uint threads_made;
-static atomic_bool creation_fails;
+extern atomic_bool creation_fails; /* for other tests of the program, too */
+atomic_bool creation_fails;
 
 int __real_pthread_create(pthread_t *thread, const pthread_attr_t *attributes, void *(*run)(void *), void *argument);
 int __wrap_pthread_create(pthread_t *thread, const pthread_attr_t *attributes, void *(*run)(void *), void *argument);
