@@ -251,6 +251,8 @@ static bool open_locked(nt_temporary *entry, const char *from, unsigned mode)
 		 : !refused && fstat(entry->fd, &status) == 0 && status.st_nlink > 0)
 		return true;
 	const int number = from ? errno : EEXIST;
+	if (!from)
+		unlinkat(at, entry->name, 0);
 	close(entry->fd);
 	errno = number;
 	return false;

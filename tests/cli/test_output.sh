@@ -271,24 +271,6 @@ for mask in 022 077 027; do
 	is "$(stat -c %a "m$mask.gltf" "m$mask.bin" | sort -u)" "$(printf '%o' $((0666 & ~mask)))"
 done
 
-scene "signals leave no temporary files"
-grid_obj 220 >grid.obj
-ended=0
-for delay in 0.01 0.02 0.05 0.08 0.11 0.15 0.2 0.3; do
-	for signal in TERM INT; do
-		# A shell's background jobs ignore SIGINT; env gives them the default again.
-		env --default-signal=INT,TERM "$NMTAN" -q -j1 grid.obj out.gltf &
-		process=$!
-		sleep $delay
-		kill -$signal $process 2>/dev/null
-		wait $process 2>/dev/null
-		[ $? -lt 128 ] || ended=$((ended + 1))
-		left=$(find . -name '.nmtan*')
-		[ -z "$left" ] || wrong "left behind: $left"
-	done
-done
-[ $ended -gt 0 ] || wrong "no run lasted long enough to be ended"
-
 scene "signals end the first process of a container, too, for which the system has no default"
 if unshare -r -p -f true 2>/dev/null; then
 	mkfifo pipe.obj
@@ -319,20 +301,6 @@ run "$data/plates.glb" a.glb
 run --sync --verify "$data/plates.glb" b.glb
 exits 0
 same a.glb b.glb
-
-scene "a report or depfile replaces nothing that the run read or wrote"
-printf 'newmtl m\nKd 1 0 0\n' >m.mtl
-{ echo 'mtllib m.mtl'; cat "$data/quad.obj"; } >quad.obj
-cp m.mtl before
-for option in --report-format=json\ --report --depfile; do
-	for pair in "m.mtl|input m.mtl" "out.bin|output out.bin"; do
-		rm -f out.*
-		run ${option}="${pair%|*}" quad.obj out.gltf
-		exits 2
-		says "${pair%|*}: refusing to write: it is the same file as the ${pair#*|}"
-	done
-done
-same m.mtl before
 
 scene "of many findings that fail the first are shown"
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\n' >bare.obj

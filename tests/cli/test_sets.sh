@@ -284,20 +284,6 @@ for round in 1 2 3; do
 	is "$(ls one/*.png | wc -l)" 6
 done
 
-scene "a run of many threads takes no name twice"
-for i in 1 2 3 4 5 6 7 8; do
-	textured s$i "map $i"
-	inputs="$inputs s$i/s$i.obj"
-done
-for round in 1 2 3; do
-	rm -rf out
-	run -q -j8 --output-format=gltf -d out --images=copy $inputs
-	exits 0
-	for i in 1 2 3 4 5 6 7 8; do
-		is "$(map_of out/s$i.gltf)" "map $i"
-	done
-done
-
 scene "killed anywhere, the first of its name"
 mkdir before && textured s1 one
 sweep kill before o.gltf -q -j1 --images=copy "$PWD/s1/s1.obj" o.gltf

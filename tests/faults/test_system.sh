@@ -27,12 +27,13 @@ only
 
 scene "pipes and standard input are read"
 mkfifo pipe.obj
-cat "$data/quad.obj" >pipe.obj &
+cat "$data/head.obj" "$data/head.obj" >twice.obj
+cat twice.obj >pipe.obj &
 run -q pipe.obj out.glb
 exits 0
 wait
-"$NMTAN" -q - same.glb <"$data/quad.obj" || wrong "standard input, a file"
-cat "$data/quad.obj" | "$NMTAN" -q - piped.glb || wrong "standard input, a pipe"
+"$NMTAN" -q - same.glb <twice.obj || wrong "standard input, a file"
+cat twice.obj | "$NMTAN" -q - piped.glb || wrong "standard input, a pipe"
 cmp -s out.glb same.glb && cmp -s out.glb piped.glb || wrong "the outputs differ"
 
 scene "what cannot be written to standard output is not laid to standard input"

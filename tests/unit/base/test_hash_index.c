@@ -19,13 +19,6 @@ TEST(numbers_of_a_hash_come_in_the_order_of_adding)
 	nt_hash_index_free(&index);
 }
 
-TEST(an_empty_index_has_nothing)
-{
-	const nt_hash_index index = {0};
-	size_t at = NT_HASH_BEGIN;
-	assert_int_equal(nt_hash_index_next(&index, 7, &at), UINT32_MAX);
-}
-
 TEST(equal_keys_have_one_number)
 {
 	nt_key_set set = {0};

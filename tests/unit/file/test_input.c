@@ -76,17 +76,6 @@ TEST(input_pages_that_are_forgotten_go_and_come_back)
 	nt_file_close(&file);
 }
 
-TEST(input_empty_is_no_error)
-{
-	put_text_file("a", "");
-	nt_error error;
-	nt_file file;
-	assert_int_equal(nt_file_open(&file, in_folder("a"), NT_NAMED_BY_USER, &error), NT_OK);
-	assert_int_equal(file.size, 0);
-	assert_non_null(file.data);
-	nt_file_close(&file);
-}
-
 /* The error names it, and nothing of it stays open. */
 TEST(input_that_cannot_be_read_is_named)
 {
@@ -107,6 +96,7 @@ TEST(input_that_cannot_be_read_is_named)
 		{"pointer", NT_NAMED_BY_USER, NT_ERROR_MISSING,
 			"Git LFS's pointer to the file, not the file itself: git lfs pull brings it"},
 		{"pointer", NT_NAMED_BY_US, NT_OK, NULL},
+		{"plain", NT_NAMED_BY_USER, NT_OK, NULL}, /* of no bytes */
 		{"secret", NT_NAMED_BY_USER, NT_ERROR_IO, "cannot read: Permission denied"},
 	};
 	const int lowest = dup(STDIN_FILENO);
@@ -126,6 +116,7 @@ TEST(input_that_cannot_be_read_is_named)
 			assert_string_equal(error.message, rows[i].message);
 			assert_string_equal(error.place.file, path);
 		}
+		assert_non_null(file.data);
 		nt_file_close(&file);
 		assert_int_equal(dup(STDIN_FILENO), lowest);
 		close(lowest);
@@ -151,28 +142,6 @@ TEST(input_that_cannot_be_mapped_is_read)
 		assert_int_equal(status, NT_ERROR_MEMORY);
 		assert_string_equal(error.place.file, paths[i]);
 	}
-}
-
-TEST(input_pipe_is_read_to_its_end)
-{
-	assert_int_equal(mkfifo(in_folder("pipe"), 0600), 0);
-	const pid_t child = fork();
-	if (child == 0) {
-		const int fd = open(in_folder("pipe"), O_WRONLY);
-		for (int i = 0; i < 50000; i++)
-			if (write(fd, "0123456789", 10) != 10)
-				_exit(1);
-		_exit(0);
-	}
-	nt_error error;
-	nt_file file;
-	assert_int_equal(nt_file_open(&file, in_folder("pipe"), NT_NAMED_BY_USER, &error), NT_OK);
-	assert_false(file.mapped);
-	assert_int_equal(file.size, 500000);
-	for (size_t i = 0; i < file.size; i++)
-		assert_int_equal(file.data[i], '0' + i % 10);
-	nt_file_close(&file);
-	assert_int_equal(waitpid(child, NULL, 0), child);
 }
 
 AROUND_EACH(make_folder, remove_folder)

@@ -59,12 +59,6 @@ static void assert_named(const nt_output_options *options, const char *wanted, n
 	nt_output_abort(output);
 }
 
-TEST(a_free_name_is_taken)
-{
-	assert_named(NULL, "a.bin", NT_ROLE_BUFFER, "new", "a.bin");
-	assert_named(NULL, "n.png", NT_ROLE_IMAGE, "new", "n.png");
-}
-
 TEST(equal_bytes_are_used)
 {
 	nt_error error;
