@@ -37,7 +37,7 @@ static void begin_log(void)
 	assert_non_null(freopen(in_folder("log"), "w", stderr));
 }
 
-/* What was printed since. */
+/* Returns the text that stderr got since. */
 static const char *end_log(void)
 {
 	static char text[4096];
