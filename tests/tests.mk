@@ -48,15 +48,12 @@ $(calls_so): tests/preload/calls.c
 	@mkdir -p $(@D)
 	$(CC) -std=c11 -D_GNU_SOURCE -O1 -fPIC -Wall -Wextra -shared -o $@ $< -ldl
 
-# The sweeps over faults of memory and the system: see tests/faults/sweep.c. Sanitizers have an allocator of their
+# The sweeps over faults of memory and the system: see tests/faults/sweep.py. Sanitizers have an allocator of their
 # own, so they sweep nothing.
-faults_bin := $(patsubst %,$(B)/tests/faults/%,faulty.so sweep make_meshopt)
-$(B)/tests/faults/faulty.so: tests/faults/faulty.c tests/faults/faulty.h
+faults_bin := $(patsubst %,$(B)/tests/faults/%,faulty.so make_meshopt)
+$(B)/tests/faults/faulty.so: tests/faults/faulty.c
 	@mkdir -p $(@D)
 	$(CC) -std=gnu11 -D_GNU_SOURCE -O1 -g -Wall -Wextra -fno-builtin -fPIC -shared -o $@ $<
-
-$(B)/tests/faults/sweep: $(B)/tests/faults/sweep.o
-	$(CC) $(NT_LDFLAGS) -o $@ $^
 
 $(B)/tests/faults/make_meshopt: $(B)/tests/faults/make_meshopt.o
 	$(CXX) $(NT_LDFLAGS) -o $@ $^ -lmeshoptimizer

@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: MIT
 #
 # What the sweeps run: every reader and writer, --verify, --in-place, many inputs, every report format, as lines
-# "name | files | what sweep.c is told | arguments". Sourced with $NMTAN, $BUILD, $ROOT and $WORK set.
+# "name | files | what sweep.py is told | arguments". Sourced with $NMTAN, $BUILD, $ROOT and $WORK set.
 #
 #   sweep_all KIND... -- STRIDE    every case with faults of every kind, "memory", "memory onwards", "EIO" and so on,
 #                                  "shorten" for an input that becomes empty; bad runs on standard output, then one
 #                                  line for each kind: tried and bad
-faults=$BUILD/tests/faults
 . "$ROOT/tests/support/manifold.sh"
 
 make_inputs() {
@@ -20,7 +19,7 @@ make_inputs() {
 	"$NMTAN" -q --update=content plates.gltf current.gltf || return 1
 	make_images &&
 	"$NMTAN" -q --draco=sequential plates.gltf draco.glb && "$NMTAN" -q --draco=edgebreaker morph.gltf edge.gltf &&
-		"$NMTAN" -q morph.gltf morph.glb && "$faults/make_meshopt" meshopt.glb
+		"$NMTAN" -q morph.gltf morph.glb && "$BUILD/tests/faults/make_meshopt" meshopt.glb
 }
 
 # An OBJ with one image of each decoder: TGA, TIFF, a height map in PNG, JPEG.
@@ -84,7 +83,7 @@ cases() {
 	done
 }
 
-# "the input that becomes empty | files | what sweep.c is told | arguments"
+# "the input that becomes empty | files | what sweep.py is told | arguments"
 shorten_cases() {
 	cat <<-END
 		mirrored_cube.obj | $cube || --images=embed mirrored_cube.obj o.glb
@@ -100,37 +99,14 @@ shorten_cases() {
 	END
 }
 
-# One case in a folder of its own: sweep_case NUMBER LINE KIND STRIDE
-sweep_case() {
-	local name files told arguments folder=$WORK/case$1
-	IFS='|' read -r name files told arguments <<<"$2"
-	rm -rf "$folder" && mkdir "$folder" || return 1
-	(cd "$WORK/in" && cp $files "$folder/") || return 1
-	[ "$3" != shorten ] || set -- "$1" "$2" "shorten:${name% }" "$4"
-	"$faults/sweep" "$faults/faulty.so" $3 "$4" $(($1 * 7 % $4)) "$folder" $told -- "$NMTAN" $arguments \
-		>"$folder.log" 2>&1
-	sed -i "s/^/${name% }: /" "$folder.log"
+sweep() {
+	BUILD=$BUILD NMTAN=$NMTAN WORK=$WORK command python3 -B "$ROOT/tests/faults/sweep.py" "$@"
 }
 
 sweep_all() {
-	local kinds=() kind line number jobs
+	local kinds=()
 	while [ "$1" != -- ]; do kinds+=("$1"); shift; done
 	for kind in "${kinds[@]}"; do
-		number=0
-		rm -f "$WORK"/case*.log
-		while IFS= read -r line; do
-			sweep_case $number "$line" "$kind" "$2" &
-			number=$((number + 1))
-			[ $((number % $(nproc))) != 0 ] || wait
-		done < <([ "$kind" = shorten ] && shorten_cases || cases)
-		wait
-		cat "$WORK"/case*.log | grep -v ', bad 0$'
-		cat "$WORK"/case*.log | awk -v kind="$kind" -v cases=$number '
-			/calls, tried/ { ended++; for (i = 1; i < NF; i++) {
-				if ($i == "tried") tried += $(i + 1)
-				} }
-			/calls, tried/ { bad += $NF }
-			END { printf "%s: %d cases, tried %d, bad %d\n", kind, ended, tried, bad
-			      exit bad > 0 || ended != cases || tried < cases }' || return 1
+		{ [ "$kind" = shorten ] && shorten_cases || cases; } | sweep "$kind" "$2" || return 1
 	done
 }

@@ -3,22 +3,39 @@
  * Preloaded into the tool: the n-th allocation, whoever makes it, or the n-th system call that the tool itself
  * makes, fails. Counting begins with main(), since what fails before it is the loader's and the C++ libraries'
  * affair; so is what the loader allocates while it opens a module, without which it may end the process:
- * the tool asks for as much before. NT_FAULTY_TRACE in the environment shows where the fault hits.
+ * the tool asks for as much before. NT_FAULTY_FILE in the environment names a file that sweep.py and this map;
+ * NT_FAULTY_TRACE shows where the fault hits.
  */
-#include "faulty.h"
-
 #include <dlfcn.h>
 #include <errno.h>
 #include <execinfo.h>
 #include <fcntl.h>
 #include <stdarg.h>
-#include <stdint.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <sys/xattr.h>
 #include <unistd.h>
+
+typedef enum faulty_kind {
+	FAULTY_MEMORY,
+	FAULTY_CALLS,
+	FAULTY_SHORTEN /* the n-th system call succeeds, but a file has become empty before it */
+} faulty_kind;
+
+/* As sweep.py packs it. */
+typedef struct faulty {
+	faulty_kind kind;
+	size_t target; /* the number of the call that fails, from 0; SIZE_MAX: none */
+	bool onwards;  /* and of all later ones */
+	int number;    /* errno, of FAULTY_CALLS */
+	char shortened[512]; /* the file, of FAULTY_SHORTEN */
+	size_t count;  /* calls seen so far */
+	bool fired;
+	char name[32]; /* of the function that failed first */
+} faulty;
 
 static faulty *shared;
 static bool armed;
@@ -174,7 +191,7 @@ static main_function *real_main;
 
 static int watched_main(int count, char **arguments, char **environment)
 {
-	const char *path = getenv(FAULTY_FILE);
+	const char *path = getenv("NT_FAULTY_FILE");
 	const int fd = path ? open(path, O_RDWR) : -1;
 	if (fd >= 0)
 		shared = mmap(NULL, sizeof *shared, PROT_READ | PROT_WRITE, MAP_SHARED, fd, 0);
