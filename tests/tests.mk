@@ -218,17 +218,17 @@ bench-farm: $(B)/nmtan
 	@bash tests/bench/farm.sh $(B)/nmtan
 
 # make bench-process PEERS=DIR: whole processes on small files, beside DIR/gltfpack.
-$(B)/tests/bench/process $(B)/tests/bench/make_obj: $(B)/tests/bench/%: $(B)/tests/bench/%.o
+$(B)/tests/bench/process: $(B)/tests/bench/process.o
 	$(CC) $(NT_LDFLAGS) -o $@ $< -lm
 
 .PHONY: bench-process
-bench-process: $(B)/tests/bench/process $(B)/nmtan $(B)/tests/bench/make_obj
+bench-process: $(B)/tests/bench/process $(B)/nmtan
 	@CXX="$(CXX)" sh tests/bench/process.sh $^
 
 # make bench-obj: reading the 104 MB file that speed is stated for; the lines "parse" and "index" are the reader.
-build/bench/torus.obj: $(B)/tests/bench/make_obj
+build/bench/torus.obj: tests/support/inputs.py
 	@mkdir -p $(@D)
-	$< 700 >$@.part && mv $@.part $@
+	python3 $< obj_torus 980000 $@
 
 
 .PHONY: bench-obj

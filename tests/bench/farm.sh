@@ -17,14 +17,13 @@ cd "$WORK"
 # One of 100 files is an OBJ of 0.7 MB, nine are heads of 40 KB, the others what data/ has of a few KB.
 make_files() {
 	local i small
-	cc -O1 -o make_obj "$ROOT/tests/bench/make_obj.c" -lm
-	./make_obj 60 >large
+	python3 "$ROOT/tests/support/inputs.py" obj_torus 7200 large.obj
 	small=("$ROOT"/data/quad*.ply "$ROOT"/data/{quad,mirrored_cube}.obj "$ROOT"/data/{plates.glb,plates.gltf,morph.gltf,skin.gltf})
 	for ((i = 0; i < count; i++)); do
 		[ $((i % 1000)) != 0 ] || { folder=in/$((i / 1000)) && mkdir -p "$folder" && cp "$ROOT/data/plates.bin" \
 			"$ROOT/data/bumps.png" "$ROOT/data/mirrored_cube.mtl" "$folder"; }
 		case $((i % 100)) in
-		0) cp large "$folder/$i.obj" ;;
+		0) cp large.obj "$folder/$i.obj" ;;
 		[1-9]) cp "$ROOT/data/head.obj" "$folder/$i.obj" ;;
 		*)
 			local file=${small[i % ${#small[@]}]}

@@ -5,13 +5,13 @@
 # part of the other's time that nmtan takes (medians, best quartiles). Measure on a machine that does nothing else.
 set -eu
 cd "$(dirname "$0")/../.."
-root=$PWD runner=$PWD/$1 nmtan=$PWD/$2 make_obj=$PWD/$3 peer=${PEERS:-/usr/bin}/gltfpack
+root=$PWD runner=$PWD/$1 nmtan=$PWD/$2 peer=${PEERS:-/usr/bin}/gltfpack
 work=$(mktemp -d)
 trap 'cd / && rm -rf "$work"' EXIT
 cd "$work"
 mkdir in out
 
-"$make_obj" 50 >torus.obj
+python3 "$root/tests/support/inputs.py" obj_torus 5000 torus.obj
 sed -E '/^vn/d; /^f/s#(/[0-9]+)/[0-9]+#\1#g' torus.obj >bare.obj
 cp "$root/data/plates.glb" plates.glb
 seq 0 499 | while read -r i; do cp bare.obj "in/$i.obj" && echo "in/$i.obj"; done >list
