@@ -691,16 +691,16 @@ nt_status ply_read_rows(ply_rows *rows)
 			status = reserve_indices(rows);
 		if (status || !plain || rows->row == rows->stop)
 			continue;
-		if (is_text(rows))
+		if (is_text(rows)) {
 			ply_next_row(rows);
-		if (is_text(rows) && first)
-			take_pieces(rows, list);
-		if (is_text(rows))
+			if (first)
+				take_pieces(rows, list);
 			status = take_lines(rows, list, element->last_list == 0);
-		else if (list)
+		} else if (list) {
 			status = take_lists(rows);
-		else
+		} else {
 			take_columns(rows);
+		}
 	}
 	return status;
 }

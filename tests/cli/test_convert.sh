@@ -224,6 +224,12 @@ grep -aq '^property float tw' plates.ply || wrong "no tangents"
 run plates.ply again.glb
 exits 0
 
+# 10 000 has floats 0.001 apart, which is the edge of a triangle that its node makes a thousandth
+gltf new far 'g.meshes = [{primitives: [{attributes: {POSITION: add("VEC3", 5126, [0, 0, 0, 1, 0, 0, 0, 1, 0])}}]}];
+	g.nodes = [{mesh: 0, scale: [1e-3, 1e-3, 1e-3], translation: [10000, 0, 0]}]'
+run far.gltf far.ply
+grep -aq '^property double x' far.ply || wrong "positions are rounded"
+
 scene "a PLY that could not be read again is not written"
 cp "$data/plates.bin" .
 printf '\0\0\300\177' | dd of=plates.bin bs=1 seek=4 conv=notrunc status=none # y of the first vertex is NaN
