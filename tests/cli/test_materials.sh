@@ -244,10 +244,11 @@ for file in quad.obj bare.obj quad.ply; do
 done
 
 # Quads around (0.5, 0.5), (1.5, 0.5), (3.5, 2.5), (-0.5, 0.5): tiles 1001, 1002, 1024 and none. A line has its corners on
-# both borders of 1002. The fan of four triangles has them in 1001, too: each face goes where its centre lies.
+# both borders of 1002. The fan of four triangles has them in 1001, too: each face goes where its centre lies. The last quad
+# lies elsewhere if that is said.
 udim_obj() {
 	echo 'mtllib m.mtl'
-	for corner in '0.1 0.1' '1.0 0.1' '3.2 2.2' '-0.8 0.3'; do
+	for corner in '0.1 0.1' '1.0 0.1' '3.2 2.2' "${1--0.8 0.3}"; do
 		set -- $corner
 		awk -v u="$1" -v v="$2" 'BEGIN { for (i = 0; i < 4; i++) {
 			x = (i == 1 || i == 2); y = (i > 1); printf "v %g %g 0\nvt %g %g\n", u + x, v + y, u + x * (u == 1 ? 1 : 0.5), v + y * 0.5 } }'
@@ -274,6 +275,17 @@ done
 rm body.1024.png
 run t.obj t.gltf
 says 'm.mtl:2: material "m.1024": warning: image cannot be read: body.1024.png'
+while read -r u v last; do
+	udim_obj "$u $v" >t.obj
+	run t.obj t.gltf
+	is "$u $v $(gltf t.gltf 'g.materials.slice(4).map((m) => m.name)') $(grep -c 'has no tile for 1 face' ../err.txt)" "$u $v $last"
+done <<'END'
+9.1 0.1 ["m.1010"] 0
+10.1 0.1 [] 1
+0.1 99.1 ["m.1991"] 0
+0.1 100.1 [] 1
+0.1 -0.8 [] 1
+END
 
 scene "a tile's number in a name is taken at its word, and faces in other tiles are a finding"
 udim_obj >t.obj
@@ -289,6 +301,11 @@ says "faces in the tiles 1001 to 1024 show it"
 printf 'mtllib m.mtl\nusemtl m\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 1 0\nvt 2 0\nvt 1 1\nf 1/1 2/2 3/3\n' >one.obj
 run one.obj t.gltf
 says_not warning
+for name in body.1001.png:1 body_1001.png:1 body1001.png:0 body.10011.png:0 body.2001.png:0 body.1001-a.png:0 1001.png:0; do
+	printf 'newmtl m\nmap_Kd %s\nnewmtl plain\n' "${name%:*}" >m.mtl
+	run t.obj t.gltf
+	is "$name $(grep -c 'is the image of one tile' ../err.txt)" "$name ${name#*:}"
+done
 
 scene "mirrored islands share texels with those that show the same image, not with another tile or material"
 for tile in 1001 1002; do images write body.$tile.png 4 4 "($tile - 1000, 0, 0)"; done
