@@ -18,7 +18,7 @@ is "$(gltf fold.glb 'g.accessors[g.meshes[0].primitives[0].attributes.COLOR_0].c
 is "$(gltf fold.glb "$colors")" "[[1,0,0,1],[0,0.5029,0,1],[0,0,1,0.5],[1,1,1,1],[1,0,0,1],[0,0,1,0.5]]"
 
 scene "a PLY has the bytes that an OBJ had, and gives them back"
-fold "" "" "" "" "#MRGB ffff0000ff00bc0000010203ffffffff"
+fold " 1 0 0" " 0 0.73725490196 0" " 0.00392156863 0.01568627451 0.01176470588 0.50196078431" "" ""
 run fold.obj fold.ply
 exits 0
 is "$(grep -ac '^property uchar red' fold.ply)" 1
@@ -31,10 +31,10 @@ python3 - >colors.txt <<-'END'
 	at = sum(sizes[t] for t, n in names[:[n for _, n in names].index("red")])
 	print(*(body[i * row + at:i * row + at + 4].hex() for i in range(4)))
 END
-is "$(cat colors.txt)" "ff0000ff 00bc00ff 010203ff ffffffff"
+is "$(cat colors.txt)" "ff0000ff 00bc00ff 01040380 ffffffff"
 run --existing=replace fold.ply back.glb
 exits 0
-is "$(gltf back.glb "$colors.slice(0, 3)")" "[[1,0,0,1],[0,0.5029,0,1],[0.0003,0.0006,0.0009,1]]"
+is "$(gltf back.glb "$colors.slice(0, 3)")" "[[1,0,0,1],[0,0.5029,0,1],[0.0003,0.0012,0.0009,0.502]]"
 run back.glb again.ply
 exits 0
 is "$(grep -ac '^property uchar red' again.ply)" 1
