@@ -48,6 +48,13 @@ done < <(find "$shared/models" "$shared/corpus" -type f \( -name '*.obj' -o -nam
 [ "$number" -gt 100 ] || wrong "only $number files found"
 valid --pairs pairs
 
+scene "Draco's own models have as many faces and points as others say"
+for row in car:1744:1856 bunny_gltf:69451:34834 cube_att:12:24; do
+	IFS=: read -r name faces points <<<"$row"
+	run -q --check --fail-on=never --report=r.json "$shared/models/drc/$name.drc"
+	is "$name $(value r.json '[(m["faces"], m["vertices"]["before"]) for m in r["files"][0]["meshes"]]')" "$name [($faces, $points)]"
+done
+
 scene "what is refused has a place"
 [ -s "$refused" ] || wrong "nothing is refused"
 is "$(grep -E '\.gl(tf|b)	' "$refused" | grep -vE '	nmtan: [^	]*\.gl(tf|b): (/|at byte |[a-z ]*, expected an object)' | head -3)" ""
