@@ -116,9 +116,9 @@ def build(names):
         if not made.returncode:
             break
         before = len(left_out)
-        for path, number, column in set(re.findall(r'^(src/[\w/.-]+):(\d+):(\d+): error', made.stderr, re.M)):
+        for path, number, column in set(re.findall(r'^(src/[\w/.-]+):(\d+):(?:(\d+):)? error', made.stderr, re.M)):
             line = bytes_of(os.path.join(TREE, path)).decode().split('#line 1\n')[1].split('\n')[int(number) - 1].expandtabs(8)
-            culprits = [int(fault) for fault in re.findall(r'nt_fault\((\d+)\)', line[:int(column)])]
+            culprits = [int(fault) for fault in re.findall(r'nt_fault\((\d+)\)', line[:int(column or 0)])]
             begins = [fault[4] for fault in table if fault and fault[0] == path and fault[4] < int(number)]
             left_out.add(culprits[-1] if culprits and attempt < 4 else (path, max(begins) if begins and attempt < 20 else -1))
         if before == len(left_out):
