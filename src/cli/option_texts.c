@@ -207,7 +207,7 @@ void nt_options_bash(nt_buffer *out)
 				"\t\tcompopt -o nospace\n\t\tCOMPREPLY=($(compgen -P \"$list\" -W '");
 			append_codes(out);
 			nt_buffer_text(out, "' -- \"${word##*,}\"))\n");
-		} else if (row->kind == NT_OPTION_TEXT || row->kind == NT_OPTION_LIST) {
+		} else if (nt_option_is_name(row)) {
 			nt_buffer_format(out, "\t\tCOMPREPLY=($(compgen -%c -- \"$word\"))\n",
 				strcmp(row->values, "DIR") == 0 ? 'd' : 'f');
 		}
@@ -263,10 +263,8 @@ static void zsh_spec(nt_buffer *out, const nt_option_row *row, bool letter)
 		nt_buffer_format(out, ":%s:_values -s , code ", row->values);
 		append_codes(out);
 	} else if (row->values) {
-		nt_buffer_format(out, ":%s:%s", row->values,
-			row->kind < NT_OPTION_TEXT               ? " "
-			: strcmp(row->values, "DIR") == 0 ? "_files -/"
-							  : "_files");
+		nt_buffer_format(out, ":%s:%s", row->values, !nt_option_is_name(row) ? " "
+			: strcmp(row->values, "DIR") == 0 ? "_files -/" : "_files");
 	}
 	nt_buffer_text(out, "' \\\n");
 }

@@ -133,7 +133,7 @@ static nt_status refuse_long(parser *p, const char *word)
 		strlen(word));
 }
 
-static bool is_name(const nt_option_row *row)
+bool nt_option_is_name(const nt_option_row *row)
 {
 	static const char *const names[] = {"FILE", "DIR", "ROOT", "GLOB"};
 	for (size_t i = 0; i < sizeof names / sizeof *names; i++)
@@ -160,7 +160,7 @@ static nt_status apply(parser *p, const nt_option_row *row, const char *word)
 	int value = row->first, count = -1;
 	uint64_t size;
 	p->given[row - nt_option_rows] = true;
-	if (word && is_name(row) && nt_name_is_too_long(word))
+	if (word && nt_option_is_name(row) && nt_name_is_too_long(word))
 		return refuse_long(p, word);
 	switch (row->kind) {
 	case NT_OPTION_HEADING:

@@ -48,6 +48,9 @@ enum { NT_MOST_OPTIONS = 128 };
 extern const nt_option_row nt_option_rows[];
 extern const size_t nt_option_row_count;
 
+/* Whether the values are names of files or folders. */
+bool nt_option_is_name(const nt_option_row *row);
+
 /* ---- commands: options.c and option_texts.c ---- */
 
 /* Actions that words ask for. */

@@ -154,7 +154,7 @@ def answer(tool, words):
     if part == 'page':
         text = page_of(open(name, encoding='utf-8').read() if name else text)
     elif part:
-        found = eval(part, {'r': json.loads(text) if text.startswith('{') else None, 'rows': text.split('\n')})
+        found = eval(part, {'r': json.loads(text) if text.startswith('{\n') else None, 'rows': text.split('\n'), 'json': json})
         text = found if isinstance(found, str) else '\n'.join(json.dumps(row) for row in found)
     text = re.sub(r'nmtan \d+\.\d+\.\d+', 'nmtan VERSION', text) + re.sub(r', \d+\.?\d* m?s$', '', messages, flags=re.M)
     return text + ('' if text.endswith('\n') or not text else '\n') + ('exit code %d\n' % run.returncode if run.returncode else '')

@@ -31,27 +31,6 @@ TEST(times_are_numbers_for_people)
 	}
 }
 
-TEST(a_list_has_a_line_for_each_mesh)
-{
-	nt_buffer out = {0};
-	nt_mesh_line lines[] = {
-		{.decision = NT_DECISION_SOLVE, .triangle_count = 4, .vertex_count = 6, .appended = 2},
-		{.decision = NT_SKIP_NO_SLOT, .triangle_count = 1},
-		{.decision = NT_DECISION_SOLVE, .same = true, .triangle_count = 4, .vertex_count = 6},
-	};
-	for (size_t i = 0; i < 3; i++)
-		nt_place_clear(&lines[i].place);
-	strcpy(lines[1].place.pointer, "/meshes/0/primitives/1");
-	strcpy(lines[1].place.object, "mesh \"head\", primitive 1");
-	nt_outcome outcome = {.summary = {.lines = lines, .line_count = 3}};
-	const nt_job job = {.input = "a.glb", .outcome = &outcome};
-	nt_message_meshes(&out, &job);
-	says(&out, "nmtan: a.glb: tangents are computed, 4 triangles, 6 -> 8 vertices\n"
-		   "nmtan: a.glb: /meshes/0/primitives/1: mesh \"head\", primitive 1: skipped (no material of "
-		   "it uses tangents), 1 triangle\n"
-		   "nmtan: a.glb: tangents are computed (the same as an earlier one's), 4 triangles, 6 vertices\n");
-}
-
 TEST(timing_names_every_stage)
 {
 	nt_buffer out = {0};
