@@ -283,6 +283,18 @@ if unshare -r -p -f true 2>/dev/null; then
 	only pipe.obj
 fi
 
+scene "a fault of the process after an input has changed is told as that, in a line that is safe for a terminal"
+name=$'a\x1b.glb'
+cp "$data/plates.glb" "$name"
+mkfifo out.glb # whose reader it waits for when it has read the input
+"$NMTAN" -q "$name" out.glb 2>"$WORK/err.txt" &
+await grep -qa 'here/a.*\.glb' /proc/$!/maps || wrong "the input is not mapped"
+truncate -s 10 "$name"
+kill -SEGV $!
+wait $!
+is $? 2
+says "nmtan: a?.glb: the file became shorter while it was read"
+
 scene "a dry run writes nothing and says what it would do"
 cp "$data/quad.obj" .
 run --dry-run quad.obj out.gltf
