@@ -152,7 +152,7 @@ fuzz:
 # make stress: numerical stability at the edges of floating point.
 stress_obj := $(patsubst tests/%.c,$(B)/tests/%.o,$(wildcard tests/stress/*.c))
 
-measure_obj := $(patsubst %,$(B)/tests/support/%.o,oracle128 surfaces soup chart golden measure)
+measure_obj := $(patsubst %,$(B)/tests/support/%.o,oracle128 surfaces soup golden measure)
 $(B)/tests/stress/stress: $(stress_obj) $(measure_obj) $(B)/libnmtan.a
 	$(CC) $(NT_LDFLAGS) -o $@ $^ -lm $(QUADMATH)
 

@@ -3,8 +3,8 @@
  * make bench: run time against the error of an image.
  *
  *   pareto export FOLDER FILE...          writes the meshes for the peers: models FILE (see models.h) and nasty ones
- *   pareto judge FOLDER NMTAN SVG FILE...  runs nmtan, native peers of $PEERS and gltfpack; reads what others left in
- *                                          FOLDER; prints tables in Markdown, writes the chart
+ *   pareto judge FOLDER NMTAN FILE...      runs nmtan, native peers of $PEERS and gltfpack; reads what others left in
+ *                                          FOLDER; prints tables in Markdown, leaves marks for chart.py
  *
  * Time is nanoseconds for each triangle of all models, of two kinds: of a call, arrays in and arrays out on one thread
  * with warm memory; of a whole run, from file to file. Programs of one kind take turns; the best of the rounds counts.
@@ -19,7 +19,6 @@
 #include <unistd.h>
 #include "base/cpu.h"
 #include "base/parallel.h"
-#include "chart.h"
 #include "faults.h"
 #include "files.h"
 #include "measure.h"
@@ -596,35 +595,19 @@ static void print_quads(const bench *b)
 	printf("\n");
 }
 
-/* Chart */
-
 /* The programs that a user chooses between, calls and runs each in a panel of their own: what has a label. */
-static void write_chart(const bench *b, const char *path)
+static void note_marks(const bench *b)
 {
-	static chart_mark marks[2][MOST_ROWS];
-	chart_panel panels[2] = {{"calls: arrays in, arrays out", marks[0], 0},
-		{"runs: from file to file", marks[1], 0}};
-	for (const row *r = b->rows; r < b->rows + b->row_count; r++) {
-		if (!r->present || !r->label[0])
-			continue;
-		const int of = r->kind >= RUN_TOOL;
-		marks[of][panels[of].mark_count++] =
-			(chart_mark){r->label, fastest(r), r->bits16.median, r->bits16.high};
-	}
-	const chart c = {.title = "Run time against the error of a normal map's round trip",
-		.subtitle = "One thread, a map of 16 bits. Full marks: median, hollow ones: 99.9 % "
-			    "of the points. Left and low is good.",
-		.x_label = "nanoseconds a triangle",
-		.y_label = "degrees",
-		.panels = panels,
-		.panel_count = 2};
-	if (!chart_write(path, &c)) {
-		fprintf(stderr, "bench: cannot write %s\n", path);
-		exit(2);
-	}
+	FILE *f = measure_open(b->folder, "marks.tsv", "w");
+	for (const row *r = b->rows; f && r < b->rows + b->row_count; r++)
+		if (r->present && r->label[0])
+			fprintf(f, "%d\t%s\t%.17g\t%.17g\t%.17g\n", r->kind >= RUN_TOOL, r->label, fastest(r),
+				r->bits16.median, r->bits16.high);
+	if (f)
+		fclose(f);
 }
 
-static void judge(bench *b, const char *svg)
+static void judge(bench *b)
 {
 	static round_trip trips[MODEL_MOST];
 	list_calls(b);
@@ -658,7 +641,7 @@ static void judge(bench *b, const char *svg)
 	print_conventions(b);
 	print_lengyel(b);
 	print_quads(b);
-	write_chart(b, svg);
+	note_marks(b);
 	for (size_t m = 0; m < b->model_count; m++)
 		round_trip_free(&trips[m]);
 }
@@ -667,13 +650,13 @@ int main(int argc, char **argv)
 {
 	static bench b;
 	const bool exports = argc > 2 && strcmp(argv[1], "export") == 0;
-	if (!exports && !(argc > 4 && strcmp(argv[1], "judge") == 0)) {
-		fprintf(stderr, "usage: pareto export FOLDER FILE... | pareto judge FOLDER NMTAN SVG FILE...\n");
+	if (!exports && !(argc > 3 && strcmp(argv[1], "judge") == 0)) {
+		fprintf(stderr, "usage: pareto export FOLDER FILE... | pareto judge FOLDER NMTAN FILE...\n");
 		return 2;
 	}
 	if (!image_check())
 		return 1;
-	const int first = exports ? 3 : 5;
+	const int first = exports ? 3 : 4;
 	b.folder = argv[2];
 	b.files = argc > first ? argv + first : NULL;
 	const char *rounds = getenv("ROUNDS");
@@ -687,7 +670,7 @@ int main(int argc, char **argv)
 		export_meshes(&b);
 	b.nmtan = argv[3];
 	if (!exports)
-		judge(&b, argv[4]);
+		judge(&b);
 	models_free(b.models, b.model_count);
 	for (size_t i = 0; i < b.nasty_count; i++)
 		nt_owned_free(&b.nasty[i]);

@@ -10,5 +10,5 @@ rm -rf "$exchange" && mkdir -p "$exchange" "${svg%/*}" || exit 2
 set -- $(sh tests/bench/models.sh "$nmtan" "$folder/models")
 "$program" export "$exchange" "$@" || exit 2
 sh tests/bench/run_peers.sh "$exchange"
-"$program" judge "$exchange" "$nmtan" "$svg" "$@" || exit 1
+"$program" judge "$exchange" "$nmtan" "$@" && python3 tests/bench/chart.py "$svg" <"$exchange/marks.tsv" || exit 1
 rm -rf "$exchange"
