@@ -164,23 +164,20 @@ static uint64_t scans_of_jpeg(const unsigned char *bytes, size_t size)
 	return count;
 }
 
-/* `numbers` [count] receives those of the tags from `first` on that the first directory has. Version 43 (BigTIFF) has 8
- * bytes where 42 has 4, and 2 for counts of tags. */
+/* `numbers` [tags] receives those of the tags from `first` on that the first directory has. */
 static void tags_of_tiff(const unsigned char *bytes, size_t size, unsigned first, unsigned tags, uint32_t *numbers)
 {
-	enum { SHORT = 3 };
-	if (size < 16)
+	enum { SHORT = 3, HEAD = 2, ENTRY = 12 };
+	if (size < 8)
 		return;
-	const bool big_endian = bytes[0] == 'M', large = number_at(bytes + 2, 2, big_endian) == 43;
-	const size_t word = large ? 8 : 4, head = large ? 8 : 2, entry = large ? 20 : 12;
-	const uint64_t at = number_at(bytes + word, word, big_endian);
-	const uint64_t count = at < size - head ? number_at(bytes + at, head, big_endian) : 0;
-	for (uint64_t i = 0; i < count && size - at - head >= (i + 1) * entry; i++) {
-		const unsigned char *tag = bytes + at + head + i * entry;
+	const bool big_endian = bytes[0] == 'M';
+	const uint64_t at = number_at(bytes + 4, 4, big_endian);
+	const uint64_t count = at < size - HEAD ? number_at(bytes + at, HEAD, big_endian) : 0;
+	for (uint64_t i = 0; i < count && size - at - HEAD >= (i + 1) * ENTRY; i++) {
+		const unsigned char *tag = bytes + at + HEAD + i * ENTRY;
 		const uint64_t name = number_at(tag, 2, big_endian), type = number_at(tag + 2, 2, big_endian);
 		if (name >= first && name - first < tags)
-			numbers[name - first] =
-				(uint32_t)number_at(tag + entry - word, type == SHORT ? 2 : 4, big_endian);
+			numbers[name - first] = (uint32_t)number_at(tag + 8, type == SHORT ? 2 : 4, big_endian);
 	}
 }
 

@@ -25,16 +25,31 @@ TEST(type_is_told_by_signature)
 
 TEST(type_of_a_tga_is_told_by_its_header)
 {
-	char header[18] = {[2] = 2, [12] = 4, [14] = 4, [16] = 24};
-	assert_int_equal(type_of(header, 18), NT_IMAGE_TGA);
-	assert_int_equal(type_of(header, 17), NT_IMAGE_OTHER);
-	header[2] = 10;
-	assert_int_equal(type_of(header, 18), NT_IMAGE_TGA);
-	header[16] = 25; /* bits a pixel */
-	assert_int_equal(type_of(header, 18), NT_IMAGE_OTHER);
-	header[16] = 24;
-	header[12] = 0; /* no width */
-	assert_int_equal(type_of(header, 18), NT_IMAGE_OTHER);
+	/* of 4 x 4 pixels of 24 bits; one byte and another are changed */
+	static const struct {
+		unsigned char at, value, and_at, and_value;
+		nt_image_type type;
+	} rows[] = {{2, 2, 2, 2, NT_IMAGE_TGA}, {2, 10, 2, 10, NT_IMAGE_TGA}, {2, 0, 2, 0, NT_IMAGE_OTHER},
+		{2, 4, 2, 4, NT_IMAGE_OTHER}, {2, 18, 2, 18, NT_IMAGE_OTHER}, {2, 3, 16, 8, NT_IMAGE_TGA},
+		{2, 11, 16, 16, NT_IMAGE_TGA}, {1, 1, 1, 1, NT_IMAGE_TGA}, {1, 2, 1, 2, NT_IMAGE_OTHER},
+		/* with a colour map */
+		{2, 1, 16, 8, NT_IMAGE_OTHER}, {2, 1, 1, 1, NT_IMAGE_OTHER}, {2, 9, 2, 9, NT_IMAGE_OTHER},
+		/* width and height, bits of a pixel, order */
+		{12, 0, 12, 0, NT_IMAGE_OTHER}, {14, 0, 14, 0, NT_IMAGE_OTHER}, {12, 0, 13, 1, NT_IMAGE_TGA},
+		{14, 0, 15, 1, NT_IMAGE_TGA}, {16, 15, 16, 15, NT_IMAGE_TGA}, {16, 32, 16, 32, NT_IMAGE_TGA},
+		{16, 25, 16, 25, NT_IMAGE_OTHER}, {17, 0x20, 17, 0x20, NT_IMAGE_TGA}, {17, 0x40, 17, 0x40, NT_IMAGE_OTHER}};
+	for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+		char header[18] = {[2] = 2, [12] = 4, [14] = 4, [16] = 24};
+		header[rows[i].at] = (char)rows[i].value;
+		header[rows[i].and_at] = (char)rows[i].and_value;
+		assert_int_equal(type_of(header, 18), rows[i].type);
+		assert_int_equal(type_of(header, 17), NT_IMAGE_OTHER);
+		/* with a map whose indices have 8, 15 or 16 bits */
+		header[1] = 1, header[2] = 9;
+		header[12] = header[14] = 4;
+		header[17] = 0;
+		assert_int_equal(type_of(header, 18), header[16] <= 16 ? NT_IMAGE_TGA : NT_IMAGE_OTHER);
+	}
 }
 
 TEST(type_of_a_name_is_its_ending_in_any_case)

@@ -82,6 +82,8 @@ TEST(names_outside_are_refused)
 	for (size_t i = 0; i < sizeof outside / sizeof *outside; i++)
 		check_resolve("dir/a.gltf", outside[i], false, NT_ERROR_INPUT);
 	check_resolve("dir/a.gltf", "http://host/x.bin", false, NT_ERROR_UNSUPPORTED);
+	check_resolve("dir/a.gltf", "Zz+a-9.0:x", true, NT_ERROR_UNSUPPORTED);
+	check_resolve("dir/a.gltf", "2a:x", true, NT_OK);
 	check_resolve("dir/a.gltf", "file:///x.bin", true, NT_ERROR_UNSUPPORTED);
 	check_resolve("dir/a.gltf", "x%00.bin", true, NT_ERROR_INPUT);
 	char path[512];
