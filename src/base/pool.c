@@ -127,7 +127,6 @@ static struct {
 	pthread_cond_t left;   /* the last helper left a region */
 	region *newest;
 	unsigned threads;      /* made, or about to be */
-	unsigned sleeping;     /* of them, waiting for `posted` */
 	unsigned without;      /* regions to go before a thread is tried again */
 	bool watches_forks;
 	unsigned waiting;      /* atomic: callers that sleep until helpers leave */
@@ -185,14 +184,15 @@ static void leave_region(region *r)
 static void send_elsewhere(pthread_t thread)
 {
 #ifdef __linux__
-	cpu_set_t all, others;
+	cpu_set_t set;
 	const int here = sched_getcpu();
-	if (here < 0 || sched_getaffinity(0, sizeof all, &all) != 0)
+	if (here < 0 || sched_getaffinity(0, sizeof set, &set) != 0)
 		return;
-	others = all;
-	CPU_CLR(here, &others);
-	if (CPU_COUNT(&others) > 0 && pthread_setaffinity_np(thread, sizeof others, &others) == 0)
-		pthread_setaffinity_np(thread, sizeof all, &all);
+	CPU_CLR(here, &set);
+	if (CPU_COUNT(&set) > 0 && pthread_setaffinity_np(thread, sizeof set, &set) == 0) {
+		CPU_SET(here, &set);
+		pthread_setaffinity_np(thread, sizeof set, &set);
+	}
 #else
 	(void)thread;
 #endif
@@ -219,9 +219,7 @@ static void *run_thread(void *unused)
 		if (!r && nt_atomic_load(&staying, RELAXED) > 0 && await_region())
 			continue;
 		if (!r) {
-			pool.sleeping++;
 			pthread_cond_wait(&pool.posted, &pool.lock);
-			pool.sleeping--;
 			continue;
 		}
 		pthread_mutex_unlock(&pool.lock);
@@ -264,7 +262,7 @@ static void start_anew(void)
 	pool.lock = (pthread_mutex_t)PTHREAD_MUTEX_INITIALIZER;
 	pool.posted = pool.left = (pthread_cond_t)PTHREAD_COND_INITIALIZER;
 	pool.newest = NULL;
-	pool.threads = pool.sleeping = pool.without = pool.made = 0;
+	pool.threads = pool.without = pool.made = 0;
 	nt_atomic_store(&pool.waiting, 0, SEQ_CST);
 	nt_atomic_store(&staying, 0, RELAXED);
 }
@@ -308,9 +306,8 @@ static void post(region *r)
 	r->older = pool.newest;
 	pool.newest = r;
 	nt_atomic_add(&pool.posts, 1, RELAXED);
-	const unsigned wakes = pool.sleeping < r->slots - 1 ? pool.sleeping : r->slots - 1;
-	for (unsigned i = 0; i < wakes; i++)
-		pthread_cond_signal(&pool.posted);
+	for (unsigned i = 1; i < r->slots; i++)
+		pthread_cond_signal(&pool.posted); /* costs next to nothing where nobody sleeps */
 	pthread_mutex_unlock(&pool.lock);
 	make_threads(lacking);
 }
