@@ -37,7 +37,8 @@ TEST(type_of_a_tga_is_told_by_its_header)
 		/* width and height, bits of a pixel, order */
 		{12, 0, 12, 0, NT_IMAGE_OTHER}, {14, 0, 14, 0, NT_IMAGE_OTHER}, {12, 0, 13, 1, NT_IMAGE_TGA},
 		{14, 0, 15, 1, NT_IMAGE_TGA}, {16, 15, 16, 15, NT_IMAGE_TGA}, {16, 32, 16, 32, NT_IMAGE_TGA},
-		{16, 25, 16, 25, NT_IMAGE_OTHER}, {17, 0x20, 17, 0x20, NT_IMAGE_TGA}, {17, 0x40, 17, 0x40, NT_IMAGE_OTHER}};
+		{16, 25, 16, 25, NT_IMAGE_OTHER}, {17, 0x20, 17, 0x20, NT_IMAGE_TGA},
+		{17, 0x40, 17, 0x40, NT_IMAGE_OTHER}};
 	for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
 		char header[18] = {[2] = 2, [12] = 4, [14] = 4, [16] = 24};
 		header[rows[i].at] = (char)rows[i].value;
