@@ -46,7 +46,7 @@ SUBJECTS = {
     'file': ['sets', 'output', 'damaged', 'stale', 'update', 'batch', 'textures', 'depfile', 'limits', 'system',
              'memory'],
     'image': ['textures', 'materials', 'limits'],
-    'obj': ['texts', 'materials', 'colors', 'convert', 'damaged', 'normals', 'origin'], 'ply': ['texts', 'convert', 'damaged', 'small_models', 'origin', 'normals'],
+    'obj': ['texts', 'materials', 'colors', 'convert', 'damaged', 'normals', 'origin', 'report'], 'ply': ['texts', 'convert', 'damaged', 'small_models', 'origin', 'normals'],
     'format': ['convert', 'verdict', 'textures', 'transcript', 'draco'], 'report': ['report', 'check', 'verdict', 'diff', 'report_folder', 'page'],
     'pipeline': ['convert', 'quads', 'normals', 'morphs', 'choose', 'report', 'manifest', 'textures'],
     'batch': ['batch', 'update', 'manifest', 'depfile', 'stale', 'limits', 'usage', 'system', 'memory'],
