@@ -72,18 +72,11 @@ static uint32_t tile_of(const nt_mesh *mesh, size_t corner, size_t size, size_t 
 /* name with the tile's number for each mark. */
 static char *name_of_tile(nt_arena *arena, const char *name, uint32_t tile)
 {
-	char *made = nt_arena_text(arena, name, strlen(name)), *to = made, number[8];
-	snprintf(number, sizeof number, "%u", FIRST_TILE + tile);
-	while (made && *name) {
-		const bool here = strncmp(name, mark, sizeof mark - 1) == 0;
-		const char *from = here ? number : name;
-		const size_t length = here ? strlen(number) : 1;
-		memcpy(to, from, length);
-		to += length;
-		name += here ? sizeof mark - 1 : 1;
-	}
+	char *made = nt_arena_text(arena, name, strlen(name)), *to = made;
+	for (const char *here; made && (here = strstr(name, mark)); name = here + sizeof mark - 1)
+		to += sprintf(to, "%.*s%u", (int)(here - name), name, FIRST_TILE + tile);
 	if (made)
-		*to = '\0';
+		strcpy(to, name);
 	return made;
 }
 

@@ -261,9 +261,10 @@ scene "UDIM: a material for each tile that faces lie in, with its images"
 udim_obj >t.obj
 for tile in 1001 1002 1024; do
 	images write body.$tile.png 4 4 "($tile - 1000, 0, 0)"
-	images write nrm.$tile.png 4 4 '(128, 128, 255)'
+	mkdir -p nrm.$tile
+	images write nrm.$tile/$tile.png 4 4 '(128, 128, 255)'
 done
-printf 'newmtl m\nmap_Kd -clamp on body.<UDIM>.png\nnorm nrm.<UDIM>.png\nnewmtl plain\n' >m.mtl
+printf 'newmtl m\nmap_Kd -clamp on body.<UDIM>.png\nnorm nrm.<UDIM>/<UDIM>.png\nnewmtl plain\n' >m.mtl
 for threads in 1 2; do
 	run --threads=$threads t.obj t.gltf
 	exits 0

@@ -109,6 +109,11 @@ for end in '\n' '\r' '\r\n'; do
 		for s in f["spots"] if f["code"] == "UV_UNMAPPED"]')" "[8]"
 done
 
+# of 200 corners as many as fit are told, and that there are more
+{ printf 'v %d 0 0\n' {0..99}; printf 'v %d 1 0\n' {99..0}; printf 'vt 0 0\nf'; printf ' %d/1' {1..200}; echo; } >d.obj
+run --check --report=r.json d.obj
+is "$(value r.json '[(len(s["source"]), s["source"][-12:]) for f in r["files"][0]["findings"] for s in f["spots"]][:1]')" "[(507, '/1 102/1 ...')]"
+
 # A triangle whose texture coordinates are on a line: with --severity=UV_UNMAPPED=error one error, of line 7.
 flat() {
 	printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nvt 0 0\nvt 1 0\nf 1/1/1 2/2/1 3/1/1\n'
