@@ -152,7 +152,7 @@ fuzz:
 # make stress: numerical stability at the edges of floating point.
 stress_obj := $(patsubst tests/%.c,$(B)/tests/%.o,$(wildcard tests/stress/*.c))
 
-measure_obj := $(patsubst %,$(B)/tests/support/%.o,oracle128 surfaces soup golden measure)
+measure_obj := $(patsubst %,$(B)/tests/support/%.o,oracle128 surfaces soup golden measure extremes)
 $(B)/tests/stress/stress: $(stress_obj) $(measure_obj) $(B)/libnmtan.a
 	$(CC) $(NT_LDFLAGS) -o $@ $^ -lm $(QUADMATH)
 
@@ -162,7 +162,7 @@ stress: $(B)/tests/stress/stress
 
 # make bench: run time against error, with the peers that the machine has; tables, and data/charts/pareto.svg.
 pareto_obj := $(patsubst %,$(B)/tests/%.o,$(addprefix bench/,pareto image round_trip faults files models native) \
-	stress/families stress/bounds)
+	stress/bounds)
 
 $(B)/tests/bench/pareto: $(pareto_obj) $(measure_obj) $(B)/libnmtan.a
 	$(CC) $(NT_LDFLAGS) -o $@ $^ -lm -ldl $(QUADMATH)

@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include "../stress/families.h"
+#include "extremes.h"
 #include "oracle128.h"
 
 enum { MOST_CORNERS = 30000, LEVEL_STEP = 3 };

@@ -314,13 +314,6 @@ static bound between(const bound *a, const bound *b)
 	return both.degrees < QUARTER ? both : (bound){.degrees = INFINITY};
 }
 
-/* Whether nothing of the group leaves the range of float when it is scaled. */
-static bool is_scalable(const oracle_triangle *t)
-{
-	return nature_of(t) != LOST && (t->sign == 0 || (t->least > 0x1p-100 && t->largest < 0x1p100 &&
-		t->least_square > 0x1p-100 && t->largest_square < 0x1p100));
-}
-
 bool find_bounds(const nmtan_mesh *mesh, const oracle_corner *exact, const oracle_triangle *triangles,
 	size_t corner_count, bound *bounds)
 {
@@ -329,14 +322,12 @@ bool find_bounds(const nmtan_mesh *mesh, const oracle_corner *exact, const oracl
 	w.parent = malloc((nodes + 1) * sizeof *w.parent);
 	w.groups = calloc(nodes + 1, sizeof *w.groups);
 	w.next = malloc((nodes + 1) * sizeof *w.next);
-	bool *scalable = malloc(corner_count + 1);
 	size_t *root_at = malloc((corner_count + 1) * sizeof *root_at);
 	for (size_t n = 0; w.parent && n < nodes; n++)
 		w.parent[n] = n;
-	const bool done = w.parent && w.groups && w.next && scalable && root_at && join_neighbours(&w);
+	const bool done = w.parent && w.groups && w.next && root_at && join_neighbours(&w);
 	for (size_t c = 0; done && c < corner_count; c++) {
 		bounds[c] = (bound){.degrees = INFINITY};
-		scalable[c] = true;
 		root_at[c] = SIZE_MAX;
 	}
 	for (size_t n = 0; done && n < nodes; n++)
@@ -348,10 +339,8 @@ bool find_bounds(const nmtan_mesh *mesh, const oracle_corner *exact, const oracl
 		normalise(&w.groups[n]);
 		w.groups[n].opposites = w.parent[n] == n && has_opposites(&w, n, w.groups[n].members);
 	}
-	for (size_t n = 0; done && n < nodes; n++) {
+	for (size_t n = 0; done && n < nodes; n++)
 		measure_spread(&w.groups[root_of(&w, n)], &triangles[n / 3], n % 3);
-		scalable[triangles[n / 3].vertex[n % 3]] &= is_scalable(&triangles[n / 3]);
-	}
 	for (size_t n = 0; done && n < nodes; n++) {
 		const oracle_triangle *t = &triangles[n / 3];
 		const size_t root = root_of(&w, n), c = t->corner[n % 3];
@@ -363,12 +352,9 @@ bool find_bounds(const nmtan_mesh *mesh, const oracle_corner *exact, const oracl
 	}
 	if (done)
 		bound_copies(&w, mesh, exact, corner_count, bounds);
-	for (size_t n = 0; done && n < nodes; n++)
-		bounds[triangles[n / 3].corner[n % 3]].scalable = scalable[triangles[n / 3].vertex[n % 3]];
 	free(w.parent);
 	free(w.groups);
 	free(w.next);
-	free(scalable);
 	free(root_at);
 	return done;
 }

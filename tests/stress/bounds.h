@@ -26,7 +26,7 @@
  *
  * Corners with NONE are those on which MikkTSpace itself is undetermined in float: its bytes are kept, because they are
  * its bytes, and nothing but unit length, perpendicularity and w can be said of them. They are counted, and how many
- * there may be is said by family (families.c).
+ * there may be is said by family (extremes.c).
  */
 #ifndef NT_STRESS_BOUNDS_H
 #define NT_STRESS_BOUNDS_H
@@ -41,7 +41,6 @@ typedef struct bound {
 	double t[3];      /* what the answer is held to */
 	double condition; /* SUM: bound_degrees is MOST_UNITS * 2^-24 times this; else 0 */
 	double degrees;   /* the bound; infinite: NONE */
-	bool scalable;    /* 64 times larger or smaller the bits are the same */
 } bound;
 
 /* bounds: [corner count], triangles as oracle_solve_triangles() has them. False: out of memory. */

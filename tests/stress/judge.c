@@ -124,7 +124,6 @@ static void score_vectors(const nmtan_mesh *mesh, const oracle_corner *exact, bo
 			continue;
 		}
 		s->off += is_off(t, &exact[c]);
-		s->judged++;
 		s->worst_degrees = fmax(s->worst_degrees, measure_degrees(t, exact[c].t));
 	}
 }
@@ -217,8 +216,6 @@ bool judge_mesh(const nt_owned *owned, bool oracle, score scores[COLUMN_COUNT])
 			s->altered = count_altered(mesh, exact, tangents[0], to);
 		if (at == COLUMN_REPAIRED && oracle)
 			score_default(exact, bounds, tangents[0], to, s);
-		for (int k = 0; oracle && k < TWIN_COUNT && (at == COLUMN_REPAIRED || at == COLUMN_ROBUST); k++)
-			s->twins[k] = twin_differences(owned, &twins[k], columns[at].method, exact, bounds);
 	}
 	nmtan_workspace_destroy(workspace);
 	free(tangents[0]);

@@ -9,7 +9,6 @@
 #include <stddef.h>
 #include "nmtan.h"
 #include "surfaces.h"
-#include "twins.h"
 
 enum { COLUMN_RAW, COLUMN_REPAIRED, COLUMN_AREA, COLUMN_LENGYEL, COLUMN_ROBUST, COLUMN_COUNT };
 
@@ -29,10 +28,9 @@ typedef struct score {
 	size_t mixed_sign;  /* faces whose corners differ in w */
 	size_t zero;        /* corners: zero or not unit or not finite */
 	size_t parallel;    /* corners: T along N */
-	size_t judged;      /* corners whose condition is below 2^24 */
 	size_t beyond;      /* corners of oriented faces whose condition is not */
 	size_t unnamed;     /* of these, robust: without NMTAN_FAULT_ILL_CONDITIONED */
-	size_t off;         /* judged corners with a component further than 2^-23 from the oracle */
+	size_t off;         /* corners of a condition below 2^24: a component further than 2^-23 from the oracle */
 	size_t tilted;      /* corners: |T . N| above 2^-21 */
 	size_t leaning;     /* corners with a unit normal: |T . N| above 2^-10 */
 	size_t replaced;    /* the default: corners whose bytes are not MikkTSpace's */
@@ -44,9 +42,8 @@ typedef struct score {
 	                                                angle over 2^-24 times the condition */
 	double unbounded_degrees; /* of the others: the worst angle to the average of all triangles of the
 	                             orientation */
-	size_t twins[TWIN_COUNT]; /* the default and robust: corners at which the twin's answer differs */
 	size_t altered;     /* usable MikkTSpace corners whose bytes repair changed */
-	double worst_degrees; /* over judged corners */
+	double worst_degrees; /* over corners whose condition is below 2^24 */
 	double ns_per_triangle;
 } score;
 

@@ -7,8 +7,8 @@
  * Prints two tables. Ends with 1 when something that must hold does not:
  *
  *   the default and robust: no zero, non-unit or non-finite tangent; one w on every face; the exact sign on every face
- *     that has one; perpendicular to normals of unit length within 2^-10; the mirrored, scaled, turned answer for the
- *     mirrored, scaled, turned mesh (twins.h)
+ *     that has one; perpendicular to normals of unit length within 2^-10. (tests/unit/tangent/test_properties.c asks
+ *     of the same families that a mirrored or turned mesh has the mirrored or turned answer.)
  *   the default: MikkTSpace's bytes wherever they are usable, and these within the bound that is proved for each corner
  * (bounds.h). Corners without a bound: none where the family says so, and no more than it allows elsewhere. A
  * repaired corner has the exact frame within 2^-23 where its condition is below 2^24
@@ -21,7 +21,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include "families.h"
+#include "bounds.h"
+#include "extremes.h"
 #include "judge.h"
 
 enum { MOST_LEVELS = 16, ORACLE_TRIANGLES = 120000 };
@@ -52,11 +53,6 @@ static void check_level(const family *f, size_t l, const score scores[COLUMN_COU
 		must_hold(f, level, name, "faces with two values of w", s->mixed_sign);
 		must_hold(f, level, name, "faces with a wrong sign", s->wrong_sign);
 		must_hold(f, level, name, "corners more than 2^-10 off perpendicular", s->leaning);
-		for (int k = 0; k < TWIN_COUNT; k++) {
-			char what[64];
-			snprintf(what, sizeof what, "corners of the twin that is %s", twins[k].name);
-			must_hold(f, level, name, what, s->twins[k]);
-		}
 	}
 	const score *repaired = &scores[COLUMN_REPAIRED];
 	must_hold(f, level, "mikktspace", "repaired corners further than 2^-23 from the oracle", repaired->inexact);
@@ -115,7 +111,7 @@ static void write_summary(const family *f, const family_scores *scores)
 /* Tangents that the default keeps or replaces: sums and worst of all levels. */
 static void write_default(const family *f, const family_scores *scores)
 {
-	size_t corners = 0, replaced = 0, unbounded = 0, leaning[2] = {0, 0}, differing = 0;
+	size_t corners = 0, replaced = 0, unbounded = 0, leaning[2] = {0, 0};
 	double degrees = 0, share = 0, units = 0, unbounded_degrees = 0;
 	for (size_t l = 0; l < f->level_count; l++) {
 		const score *s = &scores->at[l][COLUMN_REPAIRED];
@@ -128,16 +124,13 @@ static void write_default(const family *f, const family_scores *scores)
 		share = fmax(share, s->kept_share);
 		units = fmax(units, s->kept_units);
 		unbounded_degrees = fmax(unbounded_degrees, s->unbounded_degrees);
-		for (int k = 0; k < TWIN_COUNT; k++)
-			differing += s->twins[k];
 	}
 	printf("| %s | %zu | %zu | %zu | %zu | %.2g | %.2f | %.2g | %zu | ", f->name, corners, replaced,
 		leaning[0], leaning[1], degrees, share, units, unbounded);
 	if (unbounded)
-		printf("%.3g", unbounded_degrees);
+		printf("%.3g |\n", unbounded_degrees);
 	else
-		printf("-");
-	printf(" | %zu |\n", differing);
+		printf("- |\n");
 }
 
 static bool run_family(const family *f, family_scores *scores)
@@ -191,9 +184,9 @@ int main(int argc, char **argv)
 		"group, the largest share of a bound that was used, and in units of 2^-24 times the condition "
 		"(%d allowed). Of those without a bound, on which float arithmetic leaves MikkTSpace itself "
 		"undetermined: how many, and the worst angle to the average of all triangles of the "
-		"orientation. Corners whose mirrored, scaled or turned twin differs.\n\n"
+		"orientation.\n\n"
 		"| family | corners | repaired | leaning, raw | leaning | kept, degrees | of the bound | units "
-		"| no bound | degrees there | twins |\n|---|---|---|---|---|---|---|---|---|---|---|\n", MOST_UNITS);
+		"| no bound | degrees there |\n|---|---|---|---|---|---|---|---|---|---|\n", MOST_UNITS);
 	for (size_t i = 0; i < family_count; i++)
 		if (scores[i].at[0][0].faces)
 			write_default(&families[i], &scores[i]);

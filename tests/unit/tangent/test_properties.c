@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * How tangents must change when a mesh does: each property on each method, on the goldens, meshes of data/,
- * jittered surfaces and random soups. If arithmetic and order are untouched, floats are equal; elsewhere
- * they are within a bound. A mesh that breaks a property is shrunk, printed as OBJ and left in
- * build/properties; files in data/properties are tried again every time.
+ * jittered surfaces, random soups and, of signs, meshes at the edges of floating point. If arithmetic and order are
+ * untouched, floats are equal; elsewhere they are within a bound. A mesh that breaks a property is shrunk, printed as
+ * OBJ and left in build/properties; files in data/properties are tried again every time.
  *
  * Left out: corners whose answer is no sum of frames (perpendiculars that repair chose from the normal), which need
  * not turn with the mesh.
@@ -12,6 +12,7 @@
 #include <dirent.h>
 #include <math.h>
 #include <sys/stat.h>
+#include "extremes.h"
 #include "oracle128.h"
 #include "soup.h"
 
@@ -122,6 +123,7 @@ typedef struct property {
 	const char *name;
 	bool (*holds)(const soup *s, nmtan_method method);
 	bool regular; /* only asked of surfaces: bounds that need well-conditioned frames */
+	bool signs;   /* signs of floats alone change, or none: asked of extremes, too */
 	bool moves;   /* vertices or faces change places: which edges mikktspace.c leaves unsorted depends on that, so
 	                 that NMTAN_METHOD_MIKKTSPACE is not asked */
 } property;
@@ -451,21 +453,21 @@ static bool rotation_turns_tangents(const soup *s, nmtan_method method)
 }
 
 static const property properties[] = {
-	{"half_a_turn_turns_tangents", half_a_turn_turns_tangents, false, true},
-	{"rotation_turns_tangents", rotation_turns_tangents, true, true},
-	{"exact_translation_changes_nothing", exact_translation_changes_nothing, false, true},
-	{"powers_of_two_change_nothing", powers_of_two_change_nothing, false, false},
-	{"numbering_vertices_anew_changes_nothing", numbering_vertices_anew_changes_nothing, false, false},
-	{"order_of_faces_hardly_matters", order_of_faces_hardly_matters, false, true},
-	{"order_of_faces_of_surfaces_hardly_matters", order_of_faces_of_surfaces_hardly_matters, true, true},
-	{"mirroring_in_space_mirrors_tangents", mirroring_in_space_mirrors_tangents, false, true},
-	{"flipping_v_flips_w_alone", flipping_v_flips_w_alone, false, false},
-	{"flipping_u_turns_t_and_flips_w", flipping_u_turns_t_and_flips_w, false, false},
-	{"tiny_meshes_have_the_exact_frame", tiny_meshes_have_the_exact_frame, false, false},
-	{"swapping_u_and_v_swaps_t_and_b", swapping_u_and_v_swaps_t_and_b, false, false},
-	{"indexing_changes_nothing", indexing_changes_nothing, false, false},
-	{"sums_in_double_are_exact", sums_in_double_are_exact, false, false},
-	{"results_are_usable", results_are_usable, false, false},
+	{"half_a_turn_turns_tangents", half_a_turn_turns_tangents, false, true, true},
+	{"rotation_turns_tangents", rotation_turns_tangents, true, false, true},
+	{"exact_translation_changes_nothing", exact_translation_changes_nothing, false, false, true},
+	{"powers_of_two_change_nothing", powers_of_two_change_nothing, false, false, false},
+	{"numbering_vertices_anew_changes_nothing", numbering_vertices_anew_changes_nothing, false, true, false},
+	{"order_of_faces_hardly_matters", order_of_faces_hardly_matters, false, false, true},
+	{"order_of_faces_of_surfaces_hardly_matters", order_of_faces_of_surfaces_hardly_matters, true, false, true},
+	{"mirroring_in_space_mirrors_tangents", mirroring_in_space_mirrors_tangents, false, true, true},
+	{"flipping_v_flips_w_alone", flipping_v_flips_w_alone, false, true, false},
+	{"flipping_u_turns_t_and_flips_w", flipping_u_turns_t_and_flips_w, false, true, false},
+	{"tiny_meshes_have_the_exact_frame", tiny_meshes_have_the_exact_frame, false, false, false},
+	{"swapping_u_and_v_swaps_t_and_b", swapping_u_and_v_swaps_t_and_b, false, false, false},
+	{"indexing_changes_nothing", indexing_changes_nothing, false, true, false},
+	{"sums_in_double_are_exact", sums_in_double_are_exact, false, false, false},
+	{"results_are_usable", results_are_usable, false, false, false},
 };
 enum { PROPERTIES = sizeof properties / sizeof *properties };
 
@@ -527,14 +529,18 @@ enum { STEP = 5 };
 enum { STEP = 1 };
 #endif
 
-static void try_mesh(const soup *s, const char *name, bool regular)
+typedef enum mesh_kind { PLAIN, REGULAR, EXTREME } mesh_kind;
+
+static void try_mesh(const soup *s, const char *name, mesh_kind kind)
 {
 	forget();
 	for (int i = 0; i < PROPERTIES && s->face_count > 0; i++) {
-		if (properties[i].regular && !regular)
+		if ((properties[i].regular && kind != REGULAR) || (kind == EXTREME && !properties[i].signs))
 			continue;
 		for (int m = NMTAN_METHOD_MIKKTSPACE; m <= NMTAN_METHOD_MIKKTSPACE_SORTED; m++) {
+			/* of extremes one method is asked for each kind of sum: in float and in double */
 			if ((properties[i].moves && m == NMTAN_METHOD_MIKKTSPACE) ||
+				(kind == EXTREME && (m == NMTAN_METHOD_AREA || m == NMTAN_METHOD_LENGYEL)) ||
 				properties[i].holds(s, (nmtan_method)m))
 				continue;
 			broken++;
@@ -550,7 +556,7 @@ TEST(properties_hold_on_surfaces)
 	for (int surface = 0; surface < NT_SURFACE_COUNT; surface++) {
 		nt_owned grid = nt_surface_grid((nt_surface)surface, 10, 8, 0.2, 7);
 		soup s = soup_from_mesh(&grid.mesh, MOST_FACES);
-		try_mesh(&s, nt_surface_names[surface], true);
+		try_mesh(&s, nt_surface_names[surface], REGULAR);
 		soup_free(&s);
 		nt_owned_free(&grid);
 	}
@@ -564,9 +570,25 @@ TEST(properties_hold_on_random_soups)
 		char name[32];
 		snprintf(name, sizeof name, "soup %d", (int)seed);
 		soup s = soup_random(seed);
-		try_mesh(&s, name, false);
+		try_mesh(&s, name, PLAIN);
 		soup_free(&s);
 	}
+	assert_int_equal(broken, 0);
+}
+
+TEST(properties_of_signs_hold_at_the_edges_of_floating_point)
+{
+	broken = 0;
+	for (const family *f = families; f < families + family_count; f++)
+		for (size_t l = 0; !f->linear && l < f->level_count; l += STEP) {
+			char name[64];
+			snprintf(name, sizeof name, "%s %g", f->name, f->levels[l]);
+			nt_owned mesh = f->make(f->levels[l], 1000 * l);
+			soup s = soup_from_mesh(&mesh.mesh, MOST_FACES);
+			try_mesh(&s, name, EXTREME);
+			soup_free(&s);
+			nt_owned_free(&mesh);
+		}
 	assert_int_equal(broken, 0);
 }
 
@@ -577,7 +599,7 @@ static void try_golden(const char *path, const nt_golden *golden, void *context)
 		return;
 	const nmtan_mesh mesh = nt_golden_mesh(golden);
 	soup s = soup_from_mesh(&mesh, MOST_FACES);
-	try_mesh(&s, path, false);
+	try_mesh(&s, path, PLAIN);
 	soup_free(&s);
 }
 
@@ -602,7 +624,7 @@ static size_t try_folder(const char *folder)
 		snprintf(path, sizeof path, "%s/%s", folder, e->d_name);
 		soup s = soup_read_obj(path, MOST_FACES);
 		count += s.face_count > 0;
-		try_mesh(&s, path, false);
+		try_mesh(&s, path, PLAIN);
 		soup_free(&s);
 	}
 	if (d)

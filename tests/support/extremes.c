@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * See families.h. Values are computed in double and rounded once, so that a level means what it says.
+ * See extremes.h. Values are computed in double and rounded once, so that a level means what it says.
  */
-#include "families.h"
+#include "extremes.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -404,30 +404,30 @@ static const double sizes[] = {1e3, 1e4, 1e5, 1e6};
 #define NOT_FINITE 2, 40
 
 const family families[] = {
-	{"uv scale", "scale of UVs", LEVELS(decades_30), true, false, ALL_BOUNDED, uv_scale},
-	{"uv offset", "offset of UVs of size 0.1", LEVELS(offsets), true, false, ALL_BOUNDED, uv_offset},
-	{"position scale", "scale of positions", LEVELS(decades_30), true, false, ALL_BOUNDED, position_scale},
-	{"position offset", "offset of positions of size 1", LEVELS(far_offsets), true, false, ALL_BOUNDED,
+	{"uv scale", "scale of UVs", LEVELS(decades_30), false, ALL_BOUNDED, uv_scale},
+	{"uv offset", "offset of UVs of size 0.1", LEVELS(offsets), false, ALL_BOUNDED, uv_offset},
+	{"position scale", "scale of positions", LEVELS(decades_30), false, ALL_BOUNDED, position_scale},
+	{"position offset", "offset of positions of size 1", LEVELS(far_offsets), false, ALL_BOUNDED,
 		position_offset},
-	{"both scales", "scale of UVs, inverse scale of positions", LEVELS(decades_30), true, false, ALL_BOUNDED,
+	{"both scales", "scale of UVs, inverse scale of positions", LEVELS(decades_30), false, ALL_BOUNDED,
 		both_scales},
-	{"uv needles", "aspect in UV space", LEVELS(thin), true, false, ALL_BOUNDED, uv_needles},
-	{"needles", "aspect in space", LEVELS(thin), true, false, ALL_BOUNDED, needles},
-	{"both needles", "aspect in UV space and in space", LEVELS(thin), true, false, BOTH_NEEDLES, both_needles},
-	{"mixed exponents", "decades on either side of 1", LEVELS(spreads), false, false, MIXED, mixed_exponents},
-	{"cancelling", "size of the UV lattice", LEVELS(lattices), true, false, ALL_BOUNDED, cancelling},
-	{"squashed fans", "height", LEVELS(thin), true, false, ALL_BOUNDED, squashed_fans},
-	{"opposed fans", "distance from half a turn", LEVELS(thin), true, false, ALL_BOUNDED, opposed_fans},
-	{"valence", "triangles at the hub", LEVELS(valences), true, true, ALL_BOUNDED, valence},
-	{"collapsed", "per cent of triangles collapsed", LEVELS(percents), false, false, ALL_BOUNDED, collapsed},
-	{"near normal", "angle between T and N in radians", LEVELS(thin), true, false, NEAR_NORMAL, near_normal},
-	{"negative zeros", "part of zeros that are negative", LEVELS(parts), false, false, ALL_BOUNDED, negative_zeros},
-	{"quads", "how far the fourth corner wanders", LEVELS(wander), false, false, ALL_BOUNDED, quads},
-	{"planar scan", "size of lumps", LEVELS(lumps), true, false, ALL_BOUNDED, planar_scan},
-	{"public models", "model", LEVELS(models), false, false, MODELS, public_model},
-	{"size", "triangles", LEVELS(sizes), true, true, ALL_BOUNDED, size_of_mesh},
-	{"denormal uvs", "scale of UVs", LEVELS(tiny), true, false, ALL_BOUNDED, uv_scale},
-	{"denormal positions", "scale of positions", LEVELS(tiny), true, false, ALL_BOUNDED, position_scale},
-	{"not finite", "part of vertices with NaN or infinity", LEVELS(parts), false, false, NOT_FINITE, not_finite},
+	{"uv needles", "aspect in UV space", LEVELS(thin), false, ALL_BOUNDED, uv_needles},
+	{"needles", "aspect in space", LEVELS(thin), false, ALL_BOUNDED, needles},
+	{"both needles", "aspect in UV space and in space", LEVELS(thin), false, BOTH_NEEDLES, both_needles},
+	{"mixed exponents", "decades on either side of 1", LEVELS(spreads), false, MIXED, mixed_exponents},
+	{"cancelling", "size of the UV lattice", LEVELS(lattices), false, ALL_BOUNDED, cancelling},
+	{"squashed fans", "height", LEVELS(thin), false, ALL_BOUNDED, squashed_fans},
+	{"opposed fans", "distance from half a turn", LEVELS(thin), false, ALL_BOUNDED, opposed_fans},
+	{"valence", "triangles at the hub", LEVELS(valences), true, ALL_BOUNDED, valence},
+	{"collapsed", "per cent of triangles collapsed", LEVELS(percents), false, ALL_BOUNDED, collapsed},
+	{"near normal", "angle between T and N in radians", LEVELS(thin), false, NEAR_NORMAL, near_normal},
+	{"negative zeros", "part of zeros that are negative", LEVELS(parts), false, ALL_BOUNDED, negative_zeros},
+	{"quads", "how far the fourth corner wanders", LEVELS(wander), false, ALL_BOUNDED, quads},
+	{"planar scan", "size of lumps", LEVELS(lumps), false, ALL_BOUNDED, planar_scan},
+	{"public models", "model", LEVELS(models), false, MODELS, public_model},
+	{"size", "triangles", LEVELS(sizes), true, ALL_BOUNDED, size_of_mesh},
+	{"denormal uvs", "scale of UVs", LEVELS(tiny), false, ALL_BOUNDED, uv_scale},
+	{"denormal positions", "scale of positions", LEVELS(tiny), false, ALL_BOUNDED, position_scale},
+	{"not finite", "part of vertices with NaN or infinity", LEVELS(parts), false, NOT_FINITE, not_finite},
 };
 const size_t family_count = sizeof families / sizeof *families;

@@ -2,8 +2,8 @@
 /*
  * Families of meshes that lead floating point to its edges, each swept over one number.
  */
-#ifndef NT_STRESS_FAMILIES_H
-#define NT_STRESS_FAMILIES_H
+#ifndef NT_EXTREMES_H
+#define NT_EXTREMES_H
 
 #include "surfaces.h"
 
@@ -12,10 +12,9 @@ typedef struct family {
 	const char *level_name; /* what is swept */
 	const double *levels;   /* [level_count] */
 	size_t level_count;
-	bool logarithmic; /* the sweep */
 	bool linear;      /* the sweep is one of size: time per triangle must stay */
-	/* Corners with MikkTSpace's own bytes of which bounds.h can say nothing: none in the first `bounded` levels, at
-	 * most `most_unbounded` per cent of a mesh from there on. families.c says why. */
+	/* Corners with MikkTSpace's own bytes of which tests/stress/bounds.h can say nothing: none in the first
+	 * `bounded` levels, at most `most_unbounded` per cent of a mesh from there on. extremes.c says why. */
 	size_t bounded;
 	double most_unbounded;
 	nt_owned (*make)(double level, uint64_t seed);
