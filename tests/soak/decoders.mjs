@@ -4,53 +4,17 @@
 // length and a w of exactly -1 or 1, what is in a block is within the bounds of its accessors and reaches them, blocks
 // have the counts that the accessors say, and packed views have the bytes that they say.
 // MODULES is the folder with these packages; tangents: bounds may be the input's. Prints "FILE: fault" and ends with 1 where there is one.
-import { readFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { join } from 'node:path';
+import { open, packing } from '../support/gltf.mjs';
 
 const [modules, what, ...files] = process.argv.slice(2);
-const require = createRequire(join(modules, 'package.json'));
-const draco = await require('draco3d').createDecoderModule({});
-const { MeshoptDecoder } = require('meshoptimizer');
-await MeshoptDecoder.ready;
-
-const widths = { SCALAR: 1, VEC2: 2, VEC3: 3, VEC4: 4 };
-const arrays = { 5120: Int8Array, 5121: Uint8Array, 5122: Int16Array, 5123: Uint16Array, 5125: Uint32Array,
-	5126: Float32Array };
+const draco = await createRequire(join(modules, 'package.json'))('draco3d').createDecoderModule({});
 const most = { 5120: 127, 5121: 255, 5122: 32767, 5123: 65535 };
 
-function open(path) {
-	const file = readFileSync(path), size = file.readUInt32LE(12);
-	return { g: JSON.parse(file.toString('utf8', 20, 20 + size)), bin: file.subarray(28 + size) };
-}
-
-// The bytes of a view, unpacked where meshoptimizer packed it.
-function viewBytes({ g, bin }, index) {
-	const view = g.bufferViews[index], { EXT_meshopt_compression, KHR_meshopt_compression } = view.extensions ?? {};
-	const packed = EXT_meshopt_compression ?? KHR_meshopt_compression;
-	const at = (v) => new Uint8Array(bin.subarray(v.byteOffset ?? 0, (v.byteOffset ?? 0) + v.byteLength));
-	if (!packed)
-		return at(view);
-	const out = new Uint8Array(packed.count * packed.byteStride);
-	MeshoptDecoder.decodeGltfBuffer(out, packed.count, packed.byteStride, at(packed), packed.mode, packed.filter);
-	if (out.length !== view.byteLength)
-		throw new Error(`view ${index} unpacks to ${out.length} bytes, not ${view.byteLength}`);
-	return out;
-}
-
-// Rows of stored numbers, without sparse ones.
-function rows(file, accessor) {
-	const a = file.g.accessors[accessor], width = widths[a.type], Type = arrays[a.componentType];
-	const bytes = viewBytes(file, a.bufferView), size = width * Type.BYTES_PER_ELEMENT;
-	const stride = file.g.bufferViews[a.bufferView].byteStride ?? size;
-	return Array.from({ length: a.count }, (_, i) => {
-		const begin = (a.byteOffset ?? 0) + i * stride;
-		return [...new Type(bytes.slice(begin, begin + size).buffer)];
-	});
-}
-
 function decodeBlock(file, primitive) {
-	const extension = primitive.extensions.KHR_draco_mesh_compression, bytes = viewBytes(file, extension.bufferView);
+	const extension = primitive.extensions.KHR_draco_mesh_compression, view = file.g.bufferViews[extension.bufferView];
+	const begin = view.byteOffset ?? 0, bytes = file.bytes[view.buffer].subarray(begin, begin + view.byteLength);
 	const decoder = new draco.Decoder(), mesh = new draco.Mesh();
 	const status = decoder.DecodeArrayToMesh(new Int8Array(bytes), bytes.length, mesh);
 	if (!status.ok())
@@ -83,7 +47,7 @@ function judgePrimitive(file, primitive, fault) {
 		const number = primitive.attributes[name], accessor = g.accessors?.[number];
 		if (!accessor || (!block?.has(name) && (accessor.bufferView === undefined || accessor.sparse)))
 			continue;
-		const stored = block?.has(name) ? block.attribute(name) : rows(file, number);
+		const stored = block?.has(name) ? block.attribute(name) : file.rows(number);
 		/* of plain ones the validator judges; those that nobody solved keep their block, and the input's bounds */
 		if (what === 'all' && primitive.attributes.TANGENT !== undefined && block?.has(name))
 			judgeBounds(accessor, stored, (text) => fault(`${name}: ${text}`));
@@ -102,6 +66,9 @@ for (const path of files) {
 	const fault = (text) => { faults++; console.log(`${path}: ${text}`.slice(0, 300)); };
 	try {
 		const file = open(path);
+		for (const [i, view] of (file.g.bufferViews ?? []).entries())
+			if (packing(view) && packing(view).count * packing(view).byteStride !== view.byteLength)
+				fault(`view ${i} unpacks to other than ${view.byteLength} bytes`);
 		for (const mesh of file.g.meshes ?? [])
 			mesh.primitives.forEach((primitive) => judgePrimitive(file, primitive, fault));
 	} catch (error) {
