@@ -81,14 +81,14 @@ static taken struct_of(call *c, int which)
 	return all[which];
 }
 
-/* The status of each function if one struct has this size and that last word of its tail. */
+/* The status of each function if one struct has this size and that number in its tail: 1 first, others last. */
 static void expect(int which, size_t struct_bytes, size_t tail, nmtan_status expected)
 {
 	call c;
 	call_init(&c);
 	const taken t = struct_of(&c, which);
 	*t.struct_bytes = struct_bytes == SIZE_MAX ? t.bytes + 2 * sizeof(size_t) : struct_bytes;
-	t.tail[1] = tail;
+	t.tail[tail != 1] = tail;
 	assert_int_equal(solve(&c), t.by_solve ? expected : NMTAN_OK);
 	assert_int_equal(solve_vertices(&c), t.by_vertices ? expected : NMTAN_OK);
 	assert_int_equal(split(&c), t.by_split ? expected : NMTAN_OK);
@@ -101,6 +101,15 @@ TEST(size_that_is_none_is_an_argument_error)
 		expect(which, sizeof(size_t) - 1, 0, NMTAN_ERROR_ARGUMENT);
 		expect(which, 4 * sizeof(size_t) + 1, 0, NMTAN_ERROR_ARGUMENT);
 		expect(which, (size_t)1 << 40, 0, NMTAN_ERROR_ARGUMENT); /* not initialised: nobody looks behind it */
+	}
+	/* 4096 bytes are the most */
+	static size_t options[4096 / sizeof(size_t) + 1];
+	for (size_t more = 0; more < 2; more++) {
+		call c;
+		call_init(&c);
+		options[0] = 4096 + more * sizeof(size_t);
+		assert_int_equal(nmtan_tangents(&c.mesh.mesh, (const nmtan_options *)options, &c.output.output, NULL),
+			more ? NMTAN_ERROR_ARGUMENT : NMTAN_OK);
 	}
 }
 

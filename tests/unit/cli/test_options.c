@@ -288,42 +288,6 @@ TEST(names_must_be_as_many_as_the_form_takes)
 	accepts(&c, WORDS("a", name));
 }
 
-TEST(texts_name_every_option_that_is_not_hidden)
-{
-	void (*const texts[])(nt_buffer *) = {nt_options_help, nt_options_bash, nt_options_zsh};
-	for (size_t t = 0; t < 3; t++) {
-		nt_buffer out = {0};
-		texts[t](&out);
-		assert_false(out.failed);
-		for (size_t i = 0; i < nt_option_row_count; i++) {
-			const nt_option_row *row = &nt_option_rows[i];
-			char word[64];
-			if (row->kind == NT_OPTION_HEADING)
-				continue;
-			snprintf(word, sizeof word, "--%s%s", row->name,
-				t && row->values && row->kind != NT_OPTION_MAYBE_CHOICE ? "=" : "");
-			if (row->help)
-				assert_non_null(strstr(out.data, word));
-			else
-				assert_null(strstr(out.data, t ? "--completion=)" : word));
-		}
-		nt_buffer_free(&out);
-	}
-}
-
-TEST(help_lines_fit_a_terminal)
-{
-	nt_buffer out = {0};
-	nt_options_help(&out);
-	size_t width = 0;
-	for (size_t i = 0; i < out.size; i++) {
-		width = out.data[i] == '\n' ? 0 : width + 1;
-		assert_true(width <= 100);
-	}
-	assert_int_equal(out.data[out.size - 1], '\n');
-	nt_buffer_free(&out);
-}
-
 static void shapes(const char *expected, const char *const *words)
 {
 	nt_command command;
