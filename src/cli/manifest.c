@@ -167,10 +167,13 @@ static bool counts(const nt_finding *finding, const nt_report_options *judged)
 /* The findings and the result of a run. The report of one that did not fail has those of the stages, too. */
 static void append_run(nt_buffer *out, const nt_summary *s, const nt_report_options *judged, bool check)
 {
+	const bool reported = s->report && !s->report->failure;
 	size_t found[NT_CODE_COUNT] = {0};
-	for (size_t i = 0; i < s->findings.count; i++)
-		found[s->findings.items[i].code] +=
-			counts(&s->findings.items[i], judged) ? s->findings.items[i].count : 0;
+	for (size_t i = 0; i < s->findings.count; i++) {
+		const nt_finding *finding = &s->findings.items[i];
+		if (counts(finding, judged) && !(reported && nt_is_found_again(finding)))
+			found[finding->code] += finding->count;
+	}
 	for (int code = 0; s->report && code < NT_CODE_COUNT; code++)
 		found[code] = s->report->counts[code] ? s->report->counts[code] : found[code];
 	append_codes(out, "findings", found);

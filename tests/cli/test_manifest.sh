@@ -247,6 +247,10 @@ done
 is "$(value m 'm["flat.obj"]["findings"]["POS_DEGENERATE_TRIANGLE"]')" 4
 run --manifest=m flat.obj out.gltf
 is "$(value m '"POS_DEGENERATE_TRIANGLE" in m["flat.obj"]["findings"]')" False
+echo 'f 1/1/1 2/2/1 3/2/1' >>flat.obj # without area in UV space either: the solve counts it, a report does not
+run -q --check --report=c.json --manifest=m flat.obj
+is "$(value m 'sorted(m["flat.obj"]["findings"])')" "$(python3 -c 'import json
+print(sorted({f["code"] for f in json.load(open("c.json"))["files"][0]["findings"]}))')"
 
 
 # NORMALS_MADE (an info) and UV_FOLDED_QUAD (a warning) are what stages find, UV_MIRROR_SEAM (an info) is what a check finds.
