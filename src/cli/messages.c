@@ -526,6 +526,8 @@ void nt_message_success(nt_buffer *out, const nt_job *job, const nt_settings *se
 		nt_buffer_format(out, ", welded %zu vertices to %zu", s->welded.before, s->welded.after);
 	else if (settings->io.weld)
 		nt_buffer_text(out, s->welded.before ? ", no vertices are equal" : ", nothing that --weld welds");
+	if (s->packed.before)
+		nt_buffer_format(out, ", Draco merged %zu vertices to %zu", s->packed.before, s->packed.after);
 	const nt_phrase repaired = {
 		s->repaired, check ? ", would repair the tangents of " : ", repaired the tangents of ", "corner", ""};
 	nt_message_phrases(out, &repaired, 1);

@@ -92,6 +92,7 @@ void nt_summarise(nt_summary *summary, nt_scene *scene, const nt_settings *setti
 	if (!status) /* else meshes may be without content */
 		count_written(summary, scene, settings);
 	summary->welded = scene->welded;
+	summary->packed = scene->packed;
 	count_once(&scene->shared, summary);
 	summary->keeps_wrong = !settings->check && keeps_wrong(summary);
 	scene->findings = (nt_finding_list){0};

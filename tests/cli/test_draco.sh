@@ -656,6 +656,13 @@ run --draco=edgebreaker --existing=replace --only=all quad.glb out.glb
 exits 0
 says_not "nothing compressed"
 is "$(compressed out.glb)" 1
+printf 'v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 1\nvt 1 0\nvt 0 1\nf 1/1 2/3 3/2\nf 4/1 5/2 6/4\n' >soup.obj
+run soup.obj soup.glb
+run --draco=edgebreaker --existing=replace --only=all soup.glb out.glb
+says "1 primitive, 2 triangles, 6 vertices, Draco merged 6 vertices to 4,"
+is "$(gltf out.glb 'g.accessors[g.meshes[0].primitives[0].attributes.POSITION].count')" 4
+run --draco=sequential --existing=replace --only=all soup.glb out.glb
+says_not "Draco merged"
 run --existing=replace quad.glb out.glb
 says "0 of 1 primitives, skipped 1 primitive (no material of it uses tangents), --only=all makes new tangents for all"
 run --existing=replace --only=all quad.glb out.glb

@@ -389,6 +389,10 @@ nt_status nt_gltf_write_draco(nt_gltf_recoding *r, uint32_t buffer, nt_scene *sc
 	r->extension = nt_gltf_draco_of(r->primitive);
 	nt_status status = r->encoded || r->obstacle ? NT_OK : nt_gltf_draco_encode(r, error);
 	*done = !status && !r->obstacle;
+	if (*done && r->block.point_count != r->vertices->new_count) {
+		scene->packed.before += r->vertices->new_count;
+		scene->packed.after += r->block.point_count;
+	}
 	if (*done)
 		status = store(r, buffer, &scene->morph_cost, error);
 	nt_draco_block_free(&r->block);
