@@ -507,7 +507,9 @@ void nt_message_success(nt_buffer *out, const nt_job *job, const nt_settings *se
 	nt_message_phrases(out, begin, sizeof begin / sizeof *begin);
 	const bool made = s->made.count && !check;
 	const size_t all = made ? s->made.count : s->mesh_count, solved = made ? s->made.solved : s->solved_count;
-	if (check || solved == all)
+	if (check && !nt_format_is_gltf(s->input_format)) /* materials make one or several primitives of a mesh */
+		nt_buffer_format(out, "%zu %s", all, all == 1 ? "mesh" : "meshes");
+	else if (check || solved == all)
 		append_count(out, all, "primitive");
 	else
 		nt_buffer_format(out, "%zu of %zu primitives", solved, all);
@@ -525,7 +527,8 @@ void nt_message_success(nt_buffer *out, const nt_job *job, const nt_settings *se
 	if (s->welded.before > s->welded.after)
 		nt_buffer_format(out, ", welded %zu vertices to %zu", s->welded.before, s->welded.after);
 	else if (settings->io.weld)
-		nt_buffer_text(out, s->welded.before ? ", no vertices are equal" : ", nothing that --weld welds");
+		nt_buffer_text(out, s->welded.before ? ", no vertices are equal" : nt_format_is_gltf(s->input_format)
+			? ", nothing that --weld welds" : ", --weld welds glTF made from glTF");
 	if (s->packed.before)
 		nt_buffer_format(out, ", Draco merged %zu vertices to %zu", s->packed.before, s->packed.after);
 	const nt_phrase repaired = {

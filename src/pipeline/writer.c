@@ -78,7 +78,7 @@ static nt_status check_edit(const nt_settings *settings, const char *path, const
 			settings->io.images == NT_IMAGES_COPY ? "images" : "buffers", path);
 	if (writer && settings->io.weld && !edits && reader->format != NT_FORMAT_OBJ)
 		return nt_fail(error, NT_ERROR_USAGE,
-			"--weld: only glTF made from glTF is welded, not %s made from %s; an OBJ's vertices always are",
+			"--weld: only glTF made from glTF is welded, not %s made from %s",
 			writer->name, reader->name);
 	/* taking images away would renumber what refers to them */
 	if (edits && settings->io.images == NT_IMAGES_NONE)

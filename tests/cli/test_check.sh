@@ -5,8 +5,8 @@
 scene "a sound mesh passes and nothing is written"
 run --check --only=needed "$data/quad.obj" "$data/quad_le.ply"
 exits 0
-says "quad.obj: checked, 1 primitive, no findings"
-says "quad_le.ply: checked, 1 primitive, no findings"
+says "quad.obj: checked, 1 mesh, no findings"
+says "quad_le.ply: checked, 1 mesh, no findings"
 only
 run --check "$data/plates.gltf"
 says "plates.gltf: checked, 3 primitives, 1 error, 4 infos"

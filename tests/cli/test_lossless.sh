@@ -63,8 +63,9 @@ valid again.glb
 run --weld packed.glb left.glb
 exits 0
 says "1 primitive is not welded: Draco compresses it"
-run --weld "$data/quad.obj" out.glb # whose vertices are made one by one
-says ", nothing that --weld welds, "
+printf 'v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 1\nvt 1 0\nf 1/1 2/3 3/2\nf 4/1 5/2 6/3\n' >soup.obj
+run --weld soup.obj out.glb # whose vertices are those that its faces name
+says ", --weld welds glTF made from glTF, "
 same packed.glb left.glb
 for extension in '{CESIUM_primitive_outline: {indices: 0}}' '{FB_ngon_encoding: {}}' '{EXT_mesh_features: {featureIds: [{featureCount: 648}]}}' \
 	'{VENDOR_x: {of: g.accessors.push({componentType: 5126, type: "SCALAR", count: 648}) - 1}}'; do
@@ -120,7 +121,7 @@ run --weld bare.gltf out.glb
 exits 0
 is "$(gltf out.glb '"buffers" in g')" false
 
-scene "other formats are refused, but for OBJ, whose vertices are welded always"
+scene "other formats are refused, but for OBJ, whose faces say which vertices are one"
 run --weld "$data/quad_ascii.ply" out.glb
 exits 1
 says "only glTF made from glTF is welded, not glb made from ply"

@@ -25,7 +25,7 @@ TEST(times_are_numbers_for_people)
 		const nt_job job = {.input = "a.obj", .outcome = &outcome};
 		char expected[128];
 		nt_message_success(&out, &job, &settings);
-		snprintf(expected, sizeof expected, "nmtan: a.obj: checked, 1 primitive, no findings, %s\n",
+		snprintf(expected, sizeof expected, "nmtan: a.obj: checked, 1 mesh, no findings, %s\n",
 			rows[i].shown);
 		says(&out, expected);
 	}
