@@ -530,10 +530,11 @@ void nt_message_success(nt_buffer *out, const nt_job *job, const nt_settings *se
 		nt_buffer_text(out, s->welded.before ? ", no vertices are equal" : nt_format_is_gltf(s->input_format)
 			? ", nothing that --weld welds" : ", --weld welds glTF made from glTF");
 	if (s->packed.before)
-		nt_buffer_format(out, ", Draco merged %zu vertices to %zu", s->packed.before, s->packed.after);
-	const nt_phrase repaired = {
-		s->repaired, check ? ", would repair the tangents of " : ", repaired the tangents of ", "corner", ""};
-	nt_message_phrases(out, &repaired, 1);
+		nt_buffer_format(out, ", Draco makes %zu vertices of %zu", s->packed.after, s->packed.before);
+	const nt_phrase repaired[] = {
+		{s->packed.dropped, ", Draco leaves out ", "triangle", " without area in its grid"},
+		{s->repaired, check ? ", would repair the tangents of " : ", repaired the tangents of ", "corner", ""}};
+	nt_message_phrases(out, repaired, sizeof repaired / sizeof *repaired);
 	append_fixed(out, s, settings);
 	/* append_fixed() has those whose green --fix turned */
 	const size_t turned = settings->fix ? s->fixed[NT_CODE_NMAP_GREEN_DOWN] : 0;

@@ -362,10 +362,16 @@ typedef struct nt_shared_vertices {
 	nt_vertex_counts actual;
 } nt_shared_vertices;
 
-/* Vertices that --weld looked at, or that went into Draco's blocks, and what is left of them. */
+/* Vertices that --weld looked at, and what is left of them. */
 typedef struct nt_weld_result {
 	size_t before, after;
 } nt_weld_result;
+
+/* Draco's edgebreaker makes one of vertices that its grid makes equal, and leaves out triangles that it makes flat. */
+typedef struct nt_block_result {
+	size_t before, after; /* vertices, of the blocks that have others */
+	size_t dropped;       /* triangles */
+} nt_block_result;
 
 /* The place of a face in a text. */
 typedef struct nt_face_place {
@@ -395,7 +401,7 @@ typedef struct nt_scene {
 	nt_rounding rounding; /* of all meshes that were written */
 	nt_morph_cost morph_cost; /* the same */
 	nt_weld_result welded;    /* the same */
-	nt_weld_result packed;    /* of blocks in which Draco makes one of equal vertices */
+	nt_block_result packed;         /* the same */
 	nt_shared_vertices shared; /* the same */
 	const bool *turned_images; /* [turned_image_count] images of a glTF whose green --fix turns; NULL: all that
 	                              need it, if any are turned */

@@ -394,6 +394,8 @@ nt_status nt_gltf_write_draco(nt_gltf_recoding *r, uint32_t buffer, nt_scene *sc
 		scene->packed.after += r->block.point_count;
 	}
 	if (*done)
+		scene->packed.dropped += r->mesh->corner_count / 3 - r->block.face_count;
+	if (*done)
 		status = store(r, buffer, &scene->morph_cost, error);
 	nt_draco_block_free(&r->block);
 	if (status)
