@@ -164,8 +164,8 @@ stress: $(B)/tests/stress/stress
 pareto_obj := $(patsubst %,$(B)/tests/%.o,$(addprefix bench/,pareto image round_trip faults files models native) \
 	stress/bounds)
 
-$(B)/tests/bench/pareto: $(pareto_obj) $(measure_obj) $(B)/libnmtan.a
-	$(CC) $(NT_LDFLAGS) -o $@ $^ -lm -ldl $(QUADMATH)
+$(B)/tests/bench/pareto: $(pareto_obj) $(measure_obj) $(B)/libtool.a $(B)/libnmtan.a
+	$(CXX) $(NT_LDFLAGS) -o $@ $(filter %.o,$^) -Wl,--start-group $(filter %.a,$^) -Wl,--end-group $(TOOL_LIBS) -ldl $(QUADMATH)
 
 $(B)/tests/bench/sweeps: $(B)/tests/bench/sweeps.o $(measure_obj) $(B)/libnmtan.a
 	$(CC) $(NT_LDFLAGS) -o $@ $^ -lm $(QUADMATH)
@@ -181,8 +181,8 @@ bench-error: $(B)/tests/bench/pareto $(B)/tests/bench/sweeps $(B)/nmtan
 core_bench_obj := $(patsubst %,$(B)/tests/%.o,$(addprefix bench/,core core_real families models native) \
 	$(addprefix support/,measure surfaces))
 
-$(B)/tests/bench/core: $(core_bench_obj) $(B)/libnmtan.a
-	$(CC) $(NT_LDFLAGS) -o $@ $^ -lm -ldl
+$(B)/tests/bench/core: $(core_bench_obj) $(B)/libtool.a $(B)/libnmtan.a
+	$(CXX) $(NT_LDFLAGS) -o $@ $(filter %.o,$^) -Wl,--start-group $(filter %.a,$^) -Wl,--end-group $(TOOL_LIBS) -ldl
 
 .PHONY: bench-core
 bench: bench-core

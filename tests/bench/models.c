@@ -6,75 +6,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include "measure.h"
-
-/* PLY */
-
-enum { MOST_PROPERTIES = 32 };
-
-/* Vertices of float properties, a face of one list "uchar int". */
-typedef struct ply {
-	size_t vertex_count, face_count, property_count;
-	char properties[MOST_PROPERTIES][32];
-	float *rows; /* [vertex_count][property_count] */
-} ply;
-
-static void fail(const char *path)
-{
-	fprintf(stderr, "bench: %s is no PLY that nmtan wrote\n", path);
-	exit(3);
-}
-
-static ply read_header(FILE *f, const char *path)
-{
-	ply p = {0};
-	char line[256], name[32];
-	bool binary = false;
-	while (fgets(line, sizeof line, f) && strcmp(line, "end_header\n") != 0) {
-		binary = binary || strcmp(line, "format binary_little_endian 1.0\n") == 0;
-		if (sscanf(line, "element vertex %zu", &p.vertex_count) == 1 ||
-			sscanf(line, "element face %zu", &p.face_count) == 1)
-			continue;
-		if (sscanf(line, "property float %31s", name) == 1 && p.property_count < MOST_PROPERTIES)
-			strcpy(p.properties[p.property_count++], name);
-		else if (strncmp(line, "property uchar", 14) == 0) /* colours */
-			fail(path);
-	}
-	if (!binary || p.vertex_count == 0)
-		fail(path);
-	return p;
-}
-
-/* Copies `width` properties from the one of that name on; false: there is none. */
-static bool pick(const ply *p, const char *name, size_t width, float *to)
-{
-	size_t at = 0;
-	while (at < p->property_count && strcmp(p->properties[at], name) != 0)
-		at++;
-	if (at + width > p->property_count)
-		return false;
-	for (size_t v = 0; v < p->vertex_count; v++)
-		memcpy(to + width * v, p->rows + p->property_count * v + at, width * sizeof *to);
-	return true;
-}
-
-static uint32_t *read_faces(FILE *f, const ply *p, const char *path, size_t *corner_count)
-{
-	uint32_t *indices = measure_room(6 * p->face_count, sizeof *indices), *to = indices;
-	for (size_t i = 0; i < p->face_count; i++) {
-		const int size = fgetc(f);
-		uint32_t v[4];
-		if (size < 3 || size > 4 || fread(v, sizeof *v, (size_t)size, f) != (size_t)size)
-			fail(path);
-		for (int k = 0; k < size; k++)
-			if (v[k] >= p->vertex_count)
-				fail(path);
-		for (int k = 2; k < size; k++, to += 3)
-			memcpy(to, (uint32_t[3]){v[0], v[k - 1], v[k]}, 3 * sizeof *to);
-	}
-	*corner_count = (size_t)(to - indices);
-	return indices;
-}
+#include "ply/ply.h"
 
 /* Normals by area, around vertices of one position each as the file has them. */
 static void make_normals(nt_owned *o)
@@ -136,35 +70,50 @@ static void project(nt_owned *o)
 
 nt_owned model_read_ply(const char *path, float (**tangents)[4])
 {
-	FILE *f = fopen(path, "rb");
-	if (!f)
-		fail(path);
-	ply p = read_header(f, path);
-	p.rows = measure_room(p.vertex_count * p.property_count, sizeof *p.rows);
-	if (fread(p.rows, sizeof *p.rows * p.property_count, p.vertex_count, f) != p.vertex_count)
-		fail(path);
-	size_t corner_count;
-	uint32_t *indices = read_faces(f, &p, path, &corner_count);
-	fclose(f);
-	nt_owned o = nt_owned_make(p.vertex_count, corner_count / 3);
-	memcpy(o.indices, indices, corner_count * sizeof *indices);
-	free(indices);
-	if (!pick(&p, "x", 3, &o.positions[0][0]))
-		fail(path);
-	if (!pick(&p, "nx", 3, &o.normals[0][0]))
-		make_normals(&o);
-	if (!pick(&p, "s", 2, &o.texcoords[0][0]))
-		project(&o);
-	float (*rows)[4] = measure_room(p.vertex_count, sizeof *rows);
-	if (!pick(&p, "tx", 4, &rows[0][0])) {
-		free(rows);
-		rows = NULL;
+	FILE *file = fopen(path, "rb");
+	struct stat info = {0};
+	if (!file || fstat(fileno(file), &info) != 0)
+		info.st_size = 0;
+	unsigned char *bytes = measure_room((size_t)info.st_size, 1);
+	nt_scene scene;
+	nt_error error;
+	nt_scene_init(&scene, path);
+	scene.bytes = bytes;
+	scene.byte_count = file ? fread(bytes, 1, (size_t)info.st_size, file) : 0;
+	if (file)
+		fclose(file);
+	nt_error_clear(&error);
+	const nt_read_options options = {.texcoord_set = -1, .threads = 1};
+	if (nt_ply_open(&scene, &options, &error) || scene.mesh_count != 1) {
+		fprintf(stderr, "bench: %s is no PLY that nmtan wrote\n", path);
+		exit(3);
 	}
-	free(p.rows);
-	if (tangents)
-		*tangents = rows;
+	const nt_mesh *mesh = scene.meshes;
+	nt_owned o = nt_owned_make(mesh->vertex_count, nt_mesh_triangle_count(mesh));
+	uint32_t *to = o.indices;
+	const uint32_t *face = mesh->indices;
+	for (size_t f = 0; f < mesh->face_count; f++) {
+		const size_t corners = mesh->face_sizes ? mesh->face_sizes[f] : 3;
+		for (size_t k = 2; k < corners; k++, to += 3)
+			memcpy(to, (uint32_t[3]){face[0], face[k - 1], face[k]}, 3 * sizeof *to);
+		face += corners;
+	}
+	memcpy(o.positions, mesh->positions, mesh->vertex_count * sizeof *o.positions);
+	if (mesh->normals)
+		memcpy(o.normals, mesh->normals, mesh->vertex_count * sizeof *o.normals);
 	else
-		free(rows);
+		make_normals(&o);
+	if (mesh->texcoords)
+		memcpy(o.texcoords, mesh->texcoords, mesh->vertex_count * sizeof *o.texcoords);
+	else
+		project(&o);
+	if (tangents) {
+		*tangents = mesh->tangents ? measure_room(mesh->vertex_count, sizeof **tangents) : NULL;
+		if (mesh->tangents)
+			memcpy(*tangents, mesh->tangents, mesh->vertex_count * sizeof **tangents);
+	}
+	nt_scene_free(&scene);
+	free(bytes);
 	return o;
 }
 
