@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The methods on surfaces that are known: how fast their tangents converge to the analytic dP/du, and how far
- * thin bevels tilt the plane beside them. Prints a table in Markdown for each.
+ * How far thin bevels tilt the plane beside them, by each method and by the size of the cells: tables in Markdown.
  */
 #include <math.h>
 #include <stdio.h>
@@ -10,70 +9,11 @@
 #include "measure.h"
 #include "surfaces.h"
 
-/* Convergence: error against the analytic dP/du over resolutions. */
-
-enum { LEVELS = 8, SUMMED = 4 };
+enum { SUMMED = 4 };
 static const char *const summed_names[SUMMED] = {"mikktspace (angle, float)", "robust (angle, double)", "area",
 	"lengyel"};
 static const nmtan_method summed_methods[SUMMED] = {NMTAN_METHOD_MIKKTSPACE, NMTAN_METHOD_ROBUST,
 	NMTAN_METHOD_AREA, NMTAN_METHOD_LENGYEL};
-
-static void judge_level(uint32_t cells, double median[SUMMED], double worst[SUMMED])
-{
-	measure_pool pools[SUMMED] = {{0}};
-	for (int s = 0; s < NT_SURFACE_COUNT; s++) {
-		nt_owned mesh = nt_surface_grid((nt_surface)s, cells, cells, 0.25, cells);
-		float (*tangents)[4] = measure_room(mesh.corner_count, sizeof *tangents);
-		for (int m = 0; m < SUMMED; m++) {
-			const nmtan_options options = {.struct_bytes = sizeof options,
-				.method = summed_methods[m]};
-			const nmtan_output output = {.struct_bytes = sizeof output,
-				.tangents = &tangents[0][0]};
-			if (nmtan_tangents(&mesh.mesh, &options, &output, NULL))
-				exit(3);
-			/* large meshes by a sample */
-			const size_t step = mesh.corner_count / 100000 * 2 + 1;
-			for (size_t c = 0; c < mesh.corner_count; c += step)
-				measure_pool_add(&pools[m], measure_degrees(tangents[c], mesh.truth[mesh.indices[c]]));
-		}
-		free(tangents);
-		nt_owned_free(&mesh);
-	}
-	for (int m = 0; m < SUMMED; m++) {
-		measure_pool_finish(&pools[m]);
-		median[m] = pools[m].median;
-		worst[m] = pools[m].worst;
-	}
-}
-
-static void sweep_convergence(void)
-{
-	double median[SUMMED][LEVELS], worst[SUMMED][LEVELS];
-	for (int l = 0; l < LEVELS; l++) {
-		double med[SUMMED], wor[SUMMED];
-		judge_level(8u << l, med, wor);
-		for (int m = 0; m < SUMMED; m++) {
-			median[m][l] = med[m];
-			worst[m][l] = wor[m];
-		}
-	}
-	printf("\nConvergence to the analytic dP/du: sphere, torus, twisted strip, sheared saddle and noise, "
-		"vertices moved by up to a quarter of a cell; median / worst degrees. The order is the slope "
-		"of the median from 16 to 128 cells.\n\n"
-		"| cells |");
-	for (int l = 0; l < LEVELS; l++)
-		printf(" %d |", 8 << l);
-	printf(" order |\n|---|");
-	for (int l = 0; l <= LEVELS; l++)
-		printf("---|");
-	for (int m = 0; m < SUMMED; m++) {
-		printf("\n| %s |", summed_names[m]);
-		for (int l = 0; l < LEVELS; l++)
-			printf(" %.2g / %.2g |", median[m][l], worst[m][l]);
-		printf(" %.2f |", log2(median[m][1] / median[m][4]) / 3);
-	}
-	printf("\n");
-}
 
 /* Thin bevels: how far the plane's tangents are tilted at the bevel's edge. */
 
@@ -197,7 +137,6 @@ static void sweep_bevels(void)
 
 int main(void)
 {
-	sweep_convergence();
 	sweep_bevels();
 	return 0;
 }
