@@ -3,6 +3,7 @@
 #include "folder.h"
 #include "test.h"
 
+#include <fcntl.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -10,7 +11,6 @@
 TEST(it_is_at_most_what_the_machine_has)
 {
 	const uint64_t pages = (uint64_t)sysconf(_SC_PHYS_PAGES), page = (uint64_t)sysconf(_SC_PAGESIZE);
-	assert_true(nt_memory_available() > 0);
 	assert_true(nt_memory_available() <= pages * page);
 }
 
@@ -24,6 +24,14 @@ TEST(a_limit_of_the_address_space_counts)
 	const uint64_t found = nt_memory_available();
 	setrlimit(RLIMIT_AS, &before);
 	assert_true(found <= 100 * 1024 * 1024);
+}
+
+static unsigned open_files(void)
+{
+	unsigned count = 0;
+	for (int fd = 0; fd < 1024; fd++)
+		count += fcntl(fd, F_GETFD) >= 0;
+	return count;
 }
 
 /* The meaning of a list of groups if these are the limits of version 2 at the root, /a and /a/b, and of version 1. */
@@ -44,11 +52,14 @@ TEST(the_least_limit_of_the_groups_above_counts)
 	put_text_file("a/c/memory.max", "2000\n");
 	put_text_file("memory/memory.limit_in_bytes", "5000\n");
 	put_text_file("memory/a/memory.limit_in_bytes", "1000\n");
+	const unsigned before = open_files();
 	for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
 		put_text_file("list", cases[i].list);
 		assert_true(nt_memory_of_groups(in_folder("list"), in_folder("")) == cases[i].expected);
 	}
 	assert_true(nt_memory_of_groups(in_folder("nowhere"), in_folder("")) == UINT64_MAX);
+	assert_true(nt_memory_available() > 0);
+	assert_int_equal(open_files(), before);
 }
 
 AROUND_ALL(make_folder, remove_folder)

@@ -7,6 +7,7 @@
 #include <errno.h>
 #include <limits.h>
 #include <pthread.h>
+#include <sched.h>
 #include <stdatomic.h>
 #include <stdbool.h>
 #include <sys/wait.h>
@@ -205,6 +206,19 @@ TEST(threads_may_go_wherever_their_maker_may)
 	nt_pool_run(2, meet_anywhere, &m);
 	assert_false(m.missed);
 	assert_int_equal(m.fewest, nt_pool_processors());
+}
+
+TEST(processors_are_those_that_this_process_may_use)
+{
+	cpu_set_t all, one;
+	assert_int_equal(sched_getaffinity(0, sizeof all, &all), 0);
+	CPU_ZERO(&one);
+	CPU_SET(sched_getcpu(), &one);
+	assert_int_equal(sched_setaffinity(0, sizeof one, &one), 0);
+	const unsigned processors = nt_pool_processors();
+	assert_int_equal(sched_setaffinity(0, sizeof all, &all), 0);
+	assert_int_equal(processors, 1);
+	assert_int_equal(nt_pool_processors(), CPU_COUNT(&all));
 }
 
 TEST(callers_may_be_many)
