@@ -55,7 +55,8 @@ SUBJECTS = {
     'ext': ['draco', 'meshopt', 'modules', 'textures', 'verify', 'texts'],
     'base': ['limits', 'batch', 'texts', 'damaged', 'output', 'manifest', 'report', 'system', 'memory'],
 }
-UNITS = {'topology': ['api'], 'tangent': ['api'], 'ext': ['image']}  # rooms whose unit tests are those of a room, too
+# Rooms whose unit tests are those of a room, too.
+UNITS = {'topology': ['api'], 'tangent': ['api'], 'ext': ['image'], 'base': ['api']}
 LEFT_OUT = re.compile(r'test_cost|test_page|/tree/(?!test_manual)|/bindings/')
 
 
