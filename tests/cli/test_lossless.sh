@@ -98,6 +98,34 @@ gltf plain.glb ids 'g.meshes[0].primitives[0].extensions = {EXT_mesh_features: {
 run --weld ids.gltf out.gltf
 says "welded 648"
 
+scene "tangents of targets keep equal vertices apart if they stay, not if they are computed anew"
+for row in "none 4" "0 5" "1 4" "2 5"; do
+	gltf new quad "const target = '${row% *}';" 'const six = (rows) => [0, 1, 2, 0, 2, 3].flatMap((v) => rows[v]);
+		const up = Array(4).fill([0, 0, 1]), corners = [[0, 0], [1, 0], [1, 1], [0, 1]];
+		const tangents = (n) => add("VEC3", 5126, six(up).map((x, i) => i < 3 && n === +target ? 1 : x));
+		g.meshes = [{primitives: [{attributes: {NORMAL: add("VEC3", 5126, six(up)), TEXCOORD_0: add("VEC2", 5126, six(corners)),
+			POSITION: add("VEC3", 5126, six(corners.map((c) => [...c, 0])), {min: [0, 0, 0], max: [1, 1, 0]})},
+			targets: [{TANGENT: tangents(0)}, {TANGENT: tangents(1), POSITION: add("VEC3", 5126, six(up),
+				{min: [0, 0, 1], max: [0, 0, 1]})}, {TANGENT: tangents(2)}]}]}]'
+	run --weld --only=all --morph=bake quad.gltf out.glb
+	exits 0
+	says "welded 6 vertices to ${row#* }"
+done
+
+scene "a vertex that no corner uses has the tangent that a mesh alone would give it"
+gltf "$WORK/layouts/plain.gltf" alone 'const [p] = g.meshes[0].primitives;
+	p.attributes = {...p.attributes, NORMAL: add("VEC3", 5126, rows(p.attributes.NORMAL).flatMap((n, i) => [i, 30, 70]))};
+	delete p.targets;
+	g.accessors[p.indices].count = 3'
+gltf alone.gltf pooled 'const [p] = g.meshes[0].primitives;
+	g.meshes[0].primitives.push({...p, indices: g.accessors.push({...g.accessors[p.indices], byteOffset: 6}) - 1})'
+for name in alone pooled; do
+	run $name.gltf $name.glb
+	exits 0
+done
+is "$(gltf alone.glb 'rows(g.meshes[0].primitives[0].attributes.TANGENT).slice(20, 40)')" \
+	"$(gltf pooled.glb 'rows(g.meshes[0].primitives[0].attributes.TANGENT).slice(20, 40)')"
+
 scene "vertices that nothing in the file backs are not welded, whatever number it claims"
 python3 - <<'END' >claims.gltf
 import json
