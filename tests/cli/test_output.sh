@@ -228,6 +228,9 @@ says "nowhere/out.glb"
 run "$data/quad.obj" /proc/nmtan.glb
 exits 2
 says "/proc/nmtan.glb"
+run "$data/quad.obj" "$(printf %0300d 0).glb"
+exits 2
+says "0.glb: cannot write: File name too long"
 mkdir folder.glb
 run "$data/quad.obj" folder.glb
 exits 2

@@ -68,18 +68,22 @@ static void wait_for_signal(int ready)
 
 TEST(signals_remove_temporaries_and_end_the_process)
 {
-	const int numbers[] = {SIGINT, SIGTERM, SIGHUP};
-	for (int i = 0; i < 3; i++) {
+	/* the last one while the first is ignored, as by nohup */
+	const int numbers[] = {SIGINT, SIGTERM, SIGHUP, SIGTERM};
+	for (int i = 0; i < 4; i++) {
 		int ready[2];
 		assert_int_equal(pipe(ready), 0);
 		const pid_t child = fork();
 		if (child == 0) {
+			signal(SIGINT, i == 3 ? SIG_IGN : SIG_DFL);
 			signal(numbers[i], SIG_DFL);
 			wait_for_signal(ready[1]);
 		}
 		char byte;
 		assert_int_equal(read(ready[0], &byte, 1), 1);
 		assert_int_equal(count_in_folder(), 2);
+		if (i == 3)
+			assert_int_equal(kill(child, SIGINT), 0);
 		assert_int_equal(kill(child, numbers[i]), 0);
 		int code;
 		assert_int_equal(waitpid(child, &code, 0), child);
