@@ -95,16 +95,10 @@ static inline void nt_adjacency_store(const nt_adjacency *a, uint32_t place, nt_
 		a->entries[place & NT_CURSOR_PLACE] = entry;
 }
 
-/* The place of a vertex's first entry, of one range; how many corners it has. */
+/* The place of a vertex's first entry, of one range. */
 static inline uint32_t nt_adjacency_first(const nt_adjacency *a, uint32_t vertex)
 {
 	return nt_adjacency_is_narrow(a) ? vertex : a->block_begin[vertex / NT_FAN_LANES] + vertex % NT_FAN_LANES;
-}
-
-static inline uint32_t nt_adjacency_count(const nt_adjacency *a, uint32_t vertex)
-{
-	const uint32_t cursor = a->cursors[vertex];
-	return cursor & NT_CURSOR_HUB ? cursor & NT_CURSOR_PLACE : (cursor - nt_adjacency_first(a, vertex)) / a->step;
 }
 
 /* An entry, without orientation; false: a void. */

@@ -44,7 +44,8 @@ typedef struct few {
 	uint32_t high_ones;          /* those that may be the largest lower end, or above */
 	uint32_t vertices[MOST_SLOTS + 1];
 	uint32_t low[MOST_SLOTS + 1], high[MOST_SLOTS + 1]; /* the representative is between */
-	uint32_t seen[MOST_SLOTS + 1]; /* corners in the last triangles */
+	uint32_t seen[MOST_SLOTS + 1]; /* corners in the last triangles: how many, and a bit for each */
+	uint64_t corners[MOST_SLOTS + 1];
 	uint32_t most[MOST_SLOTS + 1]; /* what the largest lower end is at least if this one is above it */
 	uint32_t beside[MOST_SLOTS + 1][NT_LEAST_EDGES]; /* neighbours in so many triangles, or more */
 	uint32_t bits[PLACES];       /* of vertices, of which many have one place: 1: in no last triangle */
@@ -79,14 +80,15 @@ static bool NT_NOINLINE take_last(few *f, uint32_t triangles)
 				count++;
 				*bit = (uint32_t)1 << count;
 				f->vertices[count] = v[k];
-				f->low[count] = c + k;
 				f->seen[count] = 0;
+				f->corners[count] = 0;
 			}
 			const uint32_t slot = (uint32_t)nt_trailing_zeros(*bit);
 			if (f->are_many && f->vertices[slot] != v[k])
 				return false;
 			f->high[slot] = c + k;
 			f->seen[slot]++;
+			f->corners[slot] |= (uint64_t)1 << (c + k - 4 * f->first);
 		}
 	f->slot_count = count;
 	f->vertices[0] = f->seen[0] = 0; /* of slot 0 nothing else is read */
@@ -94,7 +96,8 @@ static bool NT_NOINLINE take_last(few *f, uint32_t triangles)
 	for (uint32_t i = 1; i <= count; i++) {
 		const uint32_t cursor = a->cursors[f->vertices[i]];
 		const uint32_t end = nt_adjacency_first(a, f->vertices[i]) + f->seen[i] * a->step;
-		f->low[i] = cursor == end || cursor == (NT_CURSOR_HUB | f->seen[i]) ? f->low[i] : 0;
+		f->low[i] = cursor == end || cursor == (NT_CURSOR_HUB | f->seen[i])
+			? 4 * f->first + (uint32_t)nt_trailing_zeros(f->corners[i]) : 0;
 	}
 	return true;
 }
@@ -116,12 +119,49 @@ static bool find_least(few *f)
 	return least >= 4 * f->first;
 }
 
-/* Finds the neighbours of those that may be the largest lower end, or above; none of a hub. */
-static void NT_NOINLINE find_beside(few *f)
+/* Vertices that are in a triangle with one, or in two or three. */
+typedef struct neighbours {
+	uint32_t once, twice, often;
+} neighbours;
+
+static inline NT_ALWAYS_INLINE void add_neighbours(neighbours *n, uint32_t others)
+{
+	n->often |= n->twice & others;
+	n->twice |= n->once & others;
+	n->once |= others;
+}
+
+/* The neighbours of a vertex; none of a hub. */
+static neighbours neighbours_of(const few *f, uint32_t vertex)
 {
 	const nt_adjacency *const a = f->mesh->adjacency;
 	const uint32_t *const bits = f->bits;
-	const bool are_many = f->are_many;
+	const uint32_t cursor = a->cursors[vertex], end = cursor & NT_CURSOR_HUB ? 0 : cursor, step = a->step;
+	neighbours n = {0, 0, 0};
+	uint32_t at = nt_adjacency_first(a, vertex);
+#ifndef NT_SMALL_CODE
+	/* few vertices have numbers below PLACES */
+	for (; nt_adjacency_is_narrow(a) && !f->are_many && at < end; at += step) {
+		const uint32_t both = a->narrow[at];
+		if (!(both & NT_ENTRY_VOID >> 16))
+			add_neighbours(&n, bits[both % PLACES] | bits[(both >> 16) % PLACES]);
+	}
+#endif
+	for (; at < end; at += step) {
+		nt_fan_entry entry;
+		if (!nt_adjacency_load(a, at, &entry))
+			continue;
+		uint32_t others = bits[entry.next % PLACES] | bits[entry.previous % PLACES];
+		if (f->are_many && others != 1)
+			others = (uint32_t)1 << slot_of(f, entry.next) | (uint32_t)1 << slot_of(f, entry.previous);
+		add_neighbours(&n, others);
+	}
+	return n;
+}
+
+/* Finds the neighbours of those that may be the largest lower end, or above. */
+static void NT_NOINLINE find_beside(few *f)
+{
 	uint32_t high = 0, above = 0; /* certainly */
 	for (uint32_t i = 1; i <= f->slot_count; i++) {
 		high |= (uint32_t)(f->high[i] >= f->least) << i;
@@ -130,24 +170,12 @@ static void NT_NOINLINE find_beside(few *f)
 	f->high_ones = high;
 	for (uint32_t left = high; left; left &= left - 1) {
 		const uint32_t i = (uint32_t)nt_trailing_zeros(left);
-		uint32_t once = 0, twice = 0, often = 0, most = f->least;
-		const uint32_t cursor = a->cursors[f->vertices[i]], end = cursor & NT_CURSOR_HUB ? 0 : cursor;
-		for (uint32_t at = nt_adjacency_first(a, f->vertices[i]); at < end; at += a->step) {
-			nt_fan_entry entry;
-			if (!nt_adjacency_load(a, at, &entry))
-				continue;
-			uint32_t others = bits[entry.next % PLACES] | bits[entry.previous % PLACES];
-			if (are_many && others != 1)
-				others = (uint32_t)1 << slot_of(f, entry.next) |
-					(uint32_t)1 << slot_of(f, entry.previous);
-			often |= twice & others;
-			twice |= once & others;
-			once |= others;
-		}
-		f->beside[i][0] = once & high;
-		f->beside[i][1] = twice & high;
-		f->beside[i][2] = often & high;
-		for (uint32_t some = once & above; some; some &= some - 1)
+		uint32_t most = f->least;
+		const neighbours n = neighbours_of(f, f->vertices[i]);
+		f->beside[i][0] = n.once & high;
+		f->beside[i][1] = n.twice & high;
+		f->beside[i][2] = n.often & high;
+		for (uint32_t some = n.once & above; some; some &= some - 1)
 			most = nt_most_of(most, f->low[nt_trailing_zeros(some)]);
 		f->most[i] = most;
 	}
@@ -207,6 +235,9 @@ static bool list_vertices(few *f, uint32_t vertex, few_cell *cell)
 	f->is_grid_of_used = true;
 	const nt_grid grid = f->grid;
 	const size_t step = f->mesh->step, rows = f->mesh->vertex_count;
+	const nt_adjacency *const a = f->mesh->adjacency;
+	/* places of a vertex are few enough for floats to be divided as integers are */
+	const float corners_a_place = 1.0f / (float)a->step;
 	const float *x = f->mesh->positions + grid.axis, at = x[step * vertex];
 	/* vertices farther apart are in two cells, whatever is rounded; if a box is so thin that this is 0, each float
 	 * has a cell of its own */
@@ -215,7 +246,9 @@ static bool list_vertices(few *f, uint32_t vertex, few_cell *cell)
 	for (size_t row = 0; row < rows; row += LANES, x += LANES * step)
 		for (uint32_t left = near_rows(x, step, rows - row, at, reach); left; left &= left - 1) {
 			const uint32_t lane = (uint32_t)nt_trailing_zeros(left), v = (uint32_t)row + lane;
-			const uint32_t corners = nt_adjacency_count(f->mesh->adjacency, v);
+			const uint32_t cursor = a->cursors[v], places = cursor - nt_adjacency_first(a, v);
+			const uint32_t corners = cursor & NT_CURSOR_HUB ? cursor & NT_CURSOR_PLACE
+				: (uint32_t)(int)(((float)(int)places + 0.5f) * corners_a_place);
 			const float other = x[step * lane];
 			if (corners == 0 || (other != at && nt_grid_cell(&grid, other) != nt_grid_cell(&grid, at)))
 				continue;
@@ -294,11 +327,13 @@ static bool list_last_corners(const few *f, few_cell *cell, const nt_cells *cell
 		return false;
 	for (; count + last < part->corner_count; count++)
 		cell->corners[count] = (nt_cell_corner){older, 0};
-	for (uint32_t i = 3 * f->first; i < 3 * f->count; i++) {
-		const uint32_t number = numbers[last_slot(f, f->ids[i])];
-		cell->corners[count] = (nt_cell_corner){number, i / 3 * 4 + i % 3};
-		count += number != 0;
-	}
+	const uint32_t *v = f->ids + 3 * f->first;
+	for (uint32_t c = 4 * f->first; c < 4 * f->count; c += 4, v += 3)
+		for (uint32_t k = 0; k < 3; k++) {
+			const uint32_t number = numbers[last_slot(f, v[k])];
+			cell->corners[count] = (nt_cell_corner){number, c + k};
+			count += number != 0;
+		}
 	return true;
 }
 
@@ -336,14 +371,12 @@ static bool NT_NOINLINE find(few *f, uint32_t slot, bool of_last)
 static bool may_be(const few *f, uint32_t middle, uint32_t end, uint32_t other)
 {
 	const uint32_t to = nt_least_of(f->high[end], f->high[other]);
-	uint32_t c = nt_most_of(nt_most_of(f->most[end], f->most[other]), f->low[middle]);
+	const uint32_t c = nt_most_of(nt_most_of(f->most[end], f->most[other]), f->low[middle]);
 	if (c > f->high[middle] || c >= to)
 		return false;
-	if (f->high[middle] < to)
-		return true;
-	while (c < to && (c % 4 == 3 || f->ids[3 * (c / 4) + c % 4] != f->vertices[middle]))
-		c++;
-	return c < to;
+	/* both are of the last triangles, of which a word has all corners */
+	const uint64_t below = ((uint64_t)1 << (to - 4 * f->first)) - 1;
+	return f->high[middle] < to || (f->corners[middle] & below) >> (c - 4 * f->first);
 }
 
 /* The same once representatives that decide it are known. */

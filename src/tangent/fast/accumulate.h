@@ -210,9 +210,10 @@ static inline NT_ALWAYS_INLINE void add_or_defer(nt_record *records, uint32_t ve
 
 /* Triangles that are not degenerate, lanes [i, end), up to the first with a corner that has no narrow entry left, or
  * whose cursor has a flag, if these are not looked at one by one: its lane, or `end`. Entries are moved as words, and
- * nothing is called, so that nearly all the loop needs is in registers. */
+ * nothing is called, so that nearly all the loop needs is in registers: all of it if there is one orientation only. */
 static inline NT_ALWAYS_INLINE size_t add_usual(const nt_fast *fast, unsigned range, const uint8_t *flags,
-	size_t i, size_t end, const uint32_t *ids, const lanes_out *out, bool is_narrow, bool are_flagged)
+	size_t i, size_t end, const uint32_t *ids, const lanes_out *out, bool is_narrow, bool are_flagged,
+	bool are_alike)
 {
 	nt_deferred deferred = {.to = NULL};
 	if (are_flagged && fast->deferred)
@@ -223,6 +224,8 @@ static inline NT_ALWAYS_INLINE size_t add_usual(const nt_fast *fast, unsigned ra
 	uint32_t *const cursors = adjacency->cursors + range * adjacency->vertex_count;
 	nt_fan_entry *const entries = adjacency->entries;
 	nt_record *const records[2] = {fast->records[!fast->records[0]], fast->records[1]}; /* any_record() */
+	const size_t first_orient = flags[i] & NT_TRIANGLE_ORIENT;
+	nt_record *const first_to = records[first_orient];
 	for (ids += 3 * i; i < end; i++, ids += 3) {
 		const uint32_t a = ids[0], b = ids[1], c = ids[2];
 		const uint32_t pa = cursors[a], pb = cursors[b], pc = cursors[c];
@@ -232,8 +235,8 @@ static inline NT_ALWAYS_INLINE size_t add_usual(const nt_fast *fast, unsigned ra
 		cursors[a] = pa + (are_flagged && pa & NT_CURSOR_HUB ? 0 : step);
 		cursors[b] = pb + (are_flagged && pb & NT_CURSOR_HUB ? 0 : step);
 		cursors[c] = pc + (are_flagged && pc & NT_CURSOR_HUB ? 0 : step);
-		const size_t orient = flags[i] & NT_TRIANGLE_ORIENT;
-		nt_record *const to = records[orient];
+		const size_t orient = are_alike ? first_orient : flags[i] & NT_TRIANGLE_ORIENT;
+		nt_record *const to = are_alike ? first_to : records[orient];
 		const float *add = out->add[0] + turned_rows[i];
 		if (are_flagged) {
 			const uint32_t bit = (uint32_t)(to == fast->records[1]) << 31;
@@ -246,10 +249,11 @@ static inline NT_ALWAYS_INLINE size_t add_usual(const nt_fast *fast, unsigned ra
 			add_record(to + c, add + 8 * NT_TRIANGLES);
 		}
 		if (is_narrow) {
-			const uint32_t both = -(uint32_t)orient & 0x80008000u;
-			narrow[pa] = b | c << 16 | both;
-			narrow[pb] = c | a << 16 | both;
-			narrow[pc] = a | b << 16 | both;
+			const uint64_t all = (-(uint64_t)orient & 0x8000800080008000u) | (a | b << 16) |
+				(uint64_t)(c | a << 16) << 32;
+			narrow[pa] = (uint32_t)(all >> 16);
+			narrow[pb] = (uint32_t)(all >> 32);
+			narrow[pc] = (uint32_t)all;
 			continue;
 		}
 		const uint64_t bits = -(uint64_t)orient & ((uint64_t)NT_ENTRY_ORIENT << 32 | NT_ENTRY_ORIENT);
@@ -271,40 +275,63 @@ static inline NT_ALWAYS_INLINE size_t add_usual(const nt_fast *fast, unsigned ra
 	return i;
 }
 
-static size_t NT_NOINLINE add_here(const nt_fast *fast, unsigned range, const uint8_t *flags, size_t i,
-	size_t end, const uint32_t *ids, const lanes_out *out)
-{
-	return add_usual(fast, range, flags, i, end, ids, out, false, false);
-}
+typedef size_t usual_adder(const nt_fast *fast, unsigned range, const uint8_t *flags, size_t i, size_t end,
+	const uint32_t *ids, const lanes_out *out);
 
-static void NT_NOINLINE add_flagged(const nt_fast *fast, unsigned range, const uint8_t *flags, size_t i,
-	size_t end, const uint32_t *ids, const lanes_out *out)
-{
-	(void)add_usual(fast, range, flags, i, end, ids, out, false, true);
-}
+#define ADD_USUAL(name, ...) \
+	static size_t NT_NOINLINE name(const nt_fast *fast, unsigned range, const uint8_t *flags, size_t i, \
+		size_t end, const uint32_t *ids, const lanes_out *out) \
+	{ \
+		return add_usual(fast, range, flags, i, end, ids, out, __VA_ARGS__); \
+	}
+ADD_USUAL(add_here, false, false, false)
+ADD_USUAL(add_flagged, false, true, false)
+ADD_USUAL(add_narrow, true, false, false)
+#ifndef __wasm__
+#ifndef NT_SMALL_CODE
+#define ALIKE_IS_WORTH_CODE
+ADD_USUAL(add_alike_here, false, false, true)
+ADD_USUAL(add_alike_narrow, true, false, true)
 
-static size_t NT_NOINLINE add_narrow(const nt_fast *fast, unsigned range, const uint8_t *flags, size_t i,
-	size_t end, const uint32_t *ids, const lanes_out *out)
+/* Whether triangles [i, end) have one orientation. */
+static bool are_one_sided(const uint8_t *flags, size_t i, size_t end)
 {
-	return add_usual(fast, range, flags, i, end, ids, out, true, false);
+	const uint64_t ones = 0x0101010101010101u, first = ones * (flags[i] & NT_TRIANGLE_ORIENT);
+	uint64_t others = 0;
+	for (uint64_t eight; i + sizeof eight <= end; i += sizeof eight) {
+		memcpy(&eight, flags + i, sizeof eight);
+		others |= eight ^ first;
+	}
+	for (; i < end; i++)
+		others |= flags[i] ^ first;
+	return !(others & ones * NT_TRIANGLE_ORIENT);
 }
+#endif
+#endif
 
 /* Triangles that are not degenerate, lanes [begin, end). */
 static void add_ordinary(nt_fast *fast, unsigned range, const uint8_t *flags, size_t begin, size_t end,
 	const uint32_t *ids, const lanes_out *out)
 {
 	const bool is_narrow = nt_adjacency_is_narrow(&fast->adjacency);
+	usual_adder *here = is_narrow ? add_narrow : add_here;
 	size_t i = begin;
+	if (begin == end)
+		return;
+#ifdef ALIKE_IS_WORTH_CODE
+	if (are_one_sided(flags, begin, end))
+		here = is_narrow ? add_alike_narrow : add_alike_here;
+#endif
 	if (!is_narrow && !fast->wants_more) {
 		if (range == 0) /* without flags, but for hubs */
-			i = add_here(fast, range, flags, i, end, ids, out);
+			i = here(fast, range, flags, i, end, ids, out);
 		if (i < end)
-			add_flagged(fast, range, flags, i, end, ids, out);
+			(void)add_flagged(fast, range, flags, i, end, ids, out);
 		return;
 	}
 	for (; i < end; i++) {
 		if (!fast->wants_more)
-			i = add_narrow(fast, range, flags, i, end, ids, out);
+			i = here(fast, range, flags, i, end, ids, out);
 		if (i < end)
 			add_triangle(fast, range, flags[i] & NT_TRIANGLE_ORIENT, ids + 3 * i, i, out);
 	}

@@ -339,13 +339,12 @@ static void NT_NOINLINE clear_along(const lanes_in *in, lanes_out *out, size_t c
 		const float (*const r)[NT_TRIANGLES] = in->row[(k + 2) % 3];
 		int along[NT_TRIANGLES];
 		EACH_LANE((int)whole_lanes(count)) {
-			const float x = n[0][i], y = n[1][i], z = n[2][i];
-			const float part = x * out->u[0][i] + y * out->u[1][i] + z * out->u[2][i];
+			const float at[3] = {n[0][i], n[1][i], n[2][i]};
+			const float part = at[0] * out->u[0][i] + at[1] * out->u[1][i] + at[2] * out->u[2][i];
 			const float e[3] = {q[0][i] - p[0][i], q[1][i] - p[1][i], q[2][i] - p[2][i]};
 			const float f[3] = {r[0][i] - p[0][i], r[1][i] - p[1][i], r[2][i] - p[2][i]};
-			along[i] = out->sound[i] & (out->u[0][i] == part * x) & (out->u[1][i] == part * y) &
-				   (out->u[2][i] == part * z) & has_length((float[]){x, y, z}, e) &
-				   has_length((float[]){x, y, z}, f);
+			along[i] = out->sound[i] & (out->u[0][i] == part * at[0]) & (out->u[1][i] == part * at[1]) &
+				   (out->u[2][i] == part * at[2]) & has_length(at, e) & has_length(at, f);
 		}
 		for (size_t i = 0; i < count; i++)
 			if (along[i])
