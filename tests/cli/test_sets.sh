@@ -453,6 +453,15 @@ exits 0
 is "$(stat -c %a a.glb)" 600
 cd "$WORK/here" && rm -rf "$place"
 
+scene "in place, attributes that cannot be listed are refused, but for a file system without any"
+for row in 95:0 38:0 5:2; do # ENOTSUP, ENOSYS, EIO
+	cp "$data/plates.glb" a.glb
+	NT_CALLS_FAIL=listxattr:${row%:*} run_under_calls --in-place a.glb
+	exits ${row#*:}
+done
+says "a.glb: cannot keep the file's attributes: Input/output error; name another output"
+same a.glb "$data/plates.glb"
+
 scene "in place, what is read-only or has further names is refused with the way out"
 cp "$data/plates.glb" a.glb
 chmod 444 a.glb

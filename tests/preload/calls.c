@@ -162,6 +162,7 @@ CALL(int, fchmod, (int fd, mode_t mode), (fd, mode))
 CALL(int, fchown, (int fd, uid_t user, gid_t group), (fd, user, group))
 CALL(int, fsetxattr, (int fd, const char *name, const void *value, size_t size, int flags),
 	(fd, name, value, size, flags))
+CALL(ssize_t, listxattr, (const char *path, char *list, size_t size), (path, list, size))
 CALL(int, mkdir, (const char *path, mode_t mode), (path, mode))
 
 ssize_t writev(int fd, const struct iovec *parts, int count)
