@@ -211,35 +211,6 @@ TEST(output_bytes_are_the_same_for_small_and_large_writes)
 	free(bytes);
 }
 
-/* Room that was announced is there before the bytes, where the file system gives any, and is no part of the file. */
-TEST(output_has_its_bytes_whatever_was_announced)
-{
-	enum { SIZE = 2000000 };
-	static const char zeros[SIZE];
-	nt_error error;
-	const int trial = open(in_folder("trial"), O_WRONLY | O_CREAT, 0666);
-	struct stat status;
-	/* some say yes and give nothing */
-	const bool gives_room = fallocate(trial, FALLOC_FL_KEEP_SIZE, 0, SIZE) == 0 && fstat(trial, &status) == 0 &&
-		(uint64_t)status.st_blocks * 512 >= SIZE;
-	assert_int_equal(close(trial), 0);
-	const uint64_t announced[] = {SIZE, 2 * SIZE, SIZE - 1, 0, UINT64_MAX};
-	for (size_t i = 0; i < sizeof announced / sizeof *announced; i++) {
-		nt_output *output = start(NULL);
-		nt_sink *sink = add(output, in_folder("out"), NT_ROLE_MAIN);
-		nt_sink_expect(sink, announced[i]);
-		const char *temporary;
-		assert_int_equal(nt_output_written(output, in_folder("out"), &temporary, &error), NT_OK);
-		assert_int_equal(stat(temporary, &status), 0);
-		assert_int_equal(status.st_size, 0);
-		assert_true(!gives_room || i > 2 || (uint64_t)status.st_blocks * 512 >= announced[i]);
-		assert_int_equal(nt_sink_write(sink, zeros, SIZE, &error), NT_OK);
-		assert_int_equal(nt_output_commit(output, &error), NT_OK);
-		assert_int_equal(stat(in_folder("out"), &status), 0);
-		assert_int_equal(status.st_size, SIZE);
-	}
-}
-
 /* The folder of the file that a link leads to is not the one in which sidecars are, and in which others look. */
 TEST(output_through_a_link_has_the_lock_of_its_sidecars_beside_them)
 {
