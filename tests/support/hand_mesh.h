@@ -78,13 +78,6 @@ static inline void hand_give_normals(hand_mesh *h)
 	h->mesh.has_normals = true;
 }
 
-static inline void hand_give_tangents(hand_mesh *h)
-{
-	hand_give_normals(h);
-	h->mesh.tangents = h->tangents[0];
-	h->mesh.has_tangents = true;
-}
-
 static inline nt_report *hand_report(const hand_mesh *h, const nt_report_options *options)
 {
 	nt_report *report = NULL;
