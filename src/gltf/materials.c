@@ -28,6 +28,7 @@ typedef struct demand {
 typedef struct nt_gltf_material {
 	demand demands[3]; /* in the order of enum nt_slot */
 	unsigned slots;
+	uint32_t sets; /* bits: those of the first 32 sets that something is looked up with, textures of any kind */
 	size_t count, unlit_count; /* of the materials */
 } nt_gltf_material;
 
@@ -160,6 +161,7 @@ static void unite(nt_gltf_material *all, const nt_gltf_material *more)
 	for (int slot = 0; slot < 3; slot++)
 		unite_demands(&all->demands[slot], &more->demands[slot]);
 	all->slots |= more->slots;
+	all->sets |= more->sets;
 	all->count += more->count;
 	all->unlit_count += more->unlit_count;
 }
@@ -202,6 +204,7 @@ static bool note_vrm_map(const nt_gltf *document, nt_gltf_material *all, uint64_
 	d.turns = d.transform.scale[0] != 1 || d.transform.scale[1] != 1;
 	d.wrap[0] = d.wrap[1] = NT_WRAP_REPEAT;
 	all->slots |= NT_SLOT_NORMAL;
+	all->sets |= 1;
 	unite_demands(&all->demands[0], &d);
 	return true;
 }
@@ -228,12 +231,37 @@ static nt_status note_slots(nt_gltf *document, nt_gltf_material *all, const nt_j
 	if (!status && clearcoat)
 		status = note_texture(document, all, 1, clearcoat, pointer,
 			"extensions/KHR_materials_clearcoat/clearcoatNormalTexture", error);
-	if (!status && anisotropy)
+	if (!status && anisotropy) {
 		all->slots |= NT_SLOT_ANISOTROPY;
+		all->sets |= !direction; /* without a texture its direction is that of the first set */
+	}
 	if (!status && direction)
 		status = note_texture(document, all, 2, direction, pointer,
 			"extensions/KHR_materials_anisotropy/anisotropyTexture", error);
 	return status;
+}
+
+/* The sets that textures of a material are looked up with: every "...Texture" in it, of extensions, too. */
+static uint32_t textured_sets(const nt_json_value *value)
+{
+	uint32_t sets = 0;
+	if (nt_json_type_of(value) != NT_JSON_OBJECT)
+		return 0;
+	for (size_t i = 0; i < nt_json_count(value); i++) {
+		size_t length;
+		const char *key = nt_json_key(value, i, &length);
+		const nt_json_value *member = nt_json_at(value, i);
+		if (length < 6 || memcmp(key + length - 6, "exture", 6) != 0 || !nt_json_find(member, "index")) {
+			sets |= textured_sets(member);
+			continue;
+		}
+		uint64_t set = 0;
+		nt_json_find_uint64(member, "texCoord", &set);
+		nt_json_find_uint64(nt_json_find(nt_json_find(member, "extensions"), "KHR_texture_transform"),
+			"texCoord", &set);
+		sets |= set < 32 ? UINT32_C(1) << set : 0;
+	}
+	return sets;
 }
 
 /* A material without its levels of detail. */
@@ -247,6 +275,7 @@ static nt_status read_material(nt_gltf *document, nt_gltf_material *all, uint64_
 		return status;
 	nt_gltf_pointer(pointer, "materials", index);
 	all->count++;
+	all->sets |= textured_sets(material);
 	return note_slots(document, all, material, index, pointer, error);
 }
 
@@ -347,6 +376,7 @@ static nt_status choose_set(nt_scene *scene, nt_mesh *mesh, const nt_gltf_materi
 	}
 	mesh->texcoord_set = asked >= 0 ? (uint32_t)asked : first ? first->set : 0;
 	mesh->texcoord_conflict = conflict && asked < 0;
+	mesh->untextured = mesh->texcoord_set < 32 && !(all->sets >> mesh->texcoord_set & 1);
 	nt_gltf_put_number(nt_gltf_put_text(name, "TEXCOORD_"), mesh->texcoord_set);
 	mesh->has_texcoords = nt_json_find(attributes, name) != NULL;
 	mesh->texcoords_transformed = first && (differ || first->animated || first->turns);

@@ -272,8 +272,8 @@ static bool is_checked(const nt_mesh *mesh)
 /* Whether two meshes of one geometry are also used alike: all that checks ask besides the geometry. */
 static bool same_uses(const nt_mesh *a, const nt_mesh *b)
 {
-	return a->slots == b->slots && a->reachable == b->reachable && a->decision == b->decision &&
-		!a->pair == !b->pair && a->doubt == b->doubt &&
+	return a->slots == b->slots && a->untextured == b->untextured && a->reachable == b->reachable &&
+		a->decision == b->decision && !a->pair == !b->pair && a->doubt == b->doubt &&
 		a->targets_without_tangents == b->targets_without_tangents && a->wrap[0] == b->wrap[0] &&
 		a->wrap[1] == b->wrap[1] && a->wrap_offset[0] == b->wrap_offset[0] &&
 		a->wrap_offset[1] == b->wrap_offset[1];

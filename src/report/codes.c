@@ -299,7 +299,8 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"Unfold the island (Blender: UV > Minimize Stretch, or UV > Unwrap), or cut it along the fold (Edge "
 		"> Mark Seam) and unwrap it again.",
 		"three quads in a row with u = 0, 1, 0.4, 1.4"),
-	ROW(UV_FLIPPED_TRIANGLE, WARNING, "w-i", EXPORT, NULL, "{count} of {detail} {is|are} flipped",
+	ROW(UV_FLIPPED_TRIANGLE, WARNING, "w-i", EXPORT, NULL,
+		"{count} {triangle is|triangles are} flipped: {detail}",
 		"A few triangles in a row are wound against their island: at most 5 % of its triangles, of its area "
 		"and of its texels, or a single one up to 10 %, if all triangles that are wound so are at most 15 % "
 		"of each. Texture is mirrored there. They make no seam and no fold. Nothing is said of what rounding "
@@ -308,9 +309,14 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"nobody sees: less than eight texels high (of 2048 x 2048), thinner in space than a twentieth of the "
 		"length, or in a row below a hundred-thousandth of the mesh's area. Nor of faces that are reversed "
 		"among their neighbours (MESH_INCONSISTENT_WINDING), or folded back onto them, whose layout is right. "
-		"An info if no material of a glTF needs tangents (of an OBJ: of its glTF), and up to a thousandth of "
-		"the mesh's area.",
-		"Relax the knot in the UV editor (Blender: UV > Minimize Stretch), or unwrap these triangles again.",
+		"Nor in a mesh whose layout is out of order anyway: where more of its area is of the rarer winding in "
+		"other islands (UV_MIXED_WINDING_ISLAND), or, in the same island, flipped and too small to be told or "
+		"without area in UV space (UV_DEGENERATE_TRIANGLE), or more edges have inconsistent winding. An info "
+		"if no texture of a glTF uses the coordinates or no material of it needs tangents (of an OBJ: of "
+		"its glTF), and up to a thousandth of the mesh's area.",
+		"Look for them in the UV editor (Blender: Overlays > Display Stretch). If the triangle bridges two "
+		"parts of the layout, a seam is missing: mark it (Edge > Mark Seam), and unwrap again. If a corner "
+		"lies on the wrong side of its neighbours, move it back, or relax the knot (UV > Minimize Stretch).",
 		"a grid of 4 x 4 quads in which one inner corner's UVs were moved over the opposite edge"),
 	ROW(UV_HARD_EDGE, WARNING, "w-i", LOOK, NULL,
 		"{count} hard {edge lies inside a UV island|edges lie inside UV islands}: {detail}",

@@ -11,12 +11,15 @@
  * There is no knot in the artist's file then. Nor is a patch of reversed faces, whose sides run in the direction of
  * their neighbours', or of faces that are folded back in space: the layout is right.
  *
+ * Nor is anything told where more of the layout is wrong than that: there a flipped triangle is no news.
+ *
  * A triangle that is told, or may have been turned, makes no mirror edge, no fold, no overlap and no shared vertex: its
  * bit is set in check->flipped, and its mirror edges go.
  */
 #include "report/check.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include "base/hash_index.h"
@@ -69,9 +72,7 @@ typedef struct patches {
 	patch *items;
 	uint32_t count;
 	extent (*islands)[2]; /* [island_count] mirrored, unmirrored */
-	double range[2][2];   /* of coordinates along an axis */
-	bool asked;           /* whether their grid is known */
-	double step[2], noise[2]; /* 0: there is none */
+	nt_texcoord_grid grid;
 } patches;
 
 static nt_status number_patches(nt_check *check, patches *p)
@@ -87,127 +88,6 @@ static nt_status number_patches(nt_check *check, patches *p)
 		p->items[i] = (patch){.first = NT_NONE};
 	memset(p->islands, 0, islands * sizeof *p->islands);
 	return NT_OK;
-}
-
-static double uv_area(const nt_surface *s, size_t t)
-{
-	const float *a = nt_side_texcoord(s, 3 * t), *b = nt_side_texcoord(s, 3 * t + 1);
-	const float *c = nt_side_texcoord(s, 3 * t + 2);
-	return 0.5 * fabs(((double)b[0] - a[0]) * ((double)c[1] - a[1]) -
-		((double)b[1] - a[1]) * ((double)c[0] - a[0]));
-}
-
-/* ---- what rounding may have turned ---- */
-
-/* Corners of a mesh that are asked for its grid. */
-enum { SAMPLES = 1024 };
-
-/*
- * A grid is coarser than what is told apart from the rounding of floats, 16 times, and has as many steps as bytes have
- * or more: a sphere of 64 segments is no rounding. Any few numbers lie on some grid, within the rounding of floats;
- * that eight do on one of up to 4 096 steps by chance has a probability of 2^-45.
- */
-static const double COARSE = 16.0;
-enum { LEAST_STEPS = 255, LEAST_VALUES = 8 };
-
-static int compare_doubles(const void *a, const void *b)
-{
-	const double x = *(const double *)a, y = *(const double *)b;
-	return x < y ? -1 : x > y;
-}
-
-/*
- * The step of which all differences of values are multiples, whose noise is given; 0: there is none. By Euclid: what is
- * left of a difference is a smaller step, at most half as large. Its error shrinks with every value that is further
- * away.
- */
-static double find_step(double *values, size_t count, double noise)
-{
-	size_t distinct = 1;
-	qsort(values, count, sizeof *values, compare_doubles);
-	for (size_t i = 1; i < count; i++)
-		distinct += values[i] > values[i - 1] + noise;
-	const double range = count ? values[count - 1] - values[0] : 0.0;
-	double step = range, error = noise;
-	for (size_t i = 0; i < count && step > fmax(COARSE * noise, 4.0 * error);) {
-		const double all = values[i] - values[0], steps = round(all / step);
-		const double left = fabs(all - steps * step), most = noise + steps * error;
-		i = left <= most ? i + 1 : 0;
-		if (left > most) {
-			step = left;
-			error = most;
-		} else if (steps * error > noise) {
-			step = all / steps;
-			error = noise / steps;
-		}
-	}
-	const bool is_grid = distinct >= LEAST_VALUES && step > fmax(COARSE * noise, 4.0 * error);
-	return is_grid && range >= LEAST_STEPS * step ? step : 0.0;
-}
-
-/* Coordinates along an axis, of some corners, and their range. */
-static size_t take_values(const nt_surface *s, int axis, double values[SAMPLES], double range[2])
-{
-	const size_t sides = 3 * s->triangle_count, stride = (sides + SAMPLES - 1) / SAMPLES;
-	size_t count = 0;
-	range[0] = INFINITY;
-	range[1] = -INFINITY;
-	for (size_t side = 0; side < sides; side += stride) {
-		const double value = nt_side_texcoord(s, side)[axis];
-		if (!isfinite(value))
-			continue;
-		values[count++] = value;
-		range[0] = fmin(range[0], value);
-		range[1] = fmax(range[1], value);
-	}
-	return count;
-}
-
-/* Asked for once, if a triangle is so small that a grid may have turned it: values are put in order for that. */
-static void find_grid(const nt_surface *s, patches *p)
-{
-	for (int axis = 0; axis < 2 && !p->asked; axis++) {
-		double values[SAMPLES];
-		const size_t count = take_values(s, axis, values, p->range[axis]);
-		/* of a difference: of two values, each made by two roundings to float */
-		p->noise[axis] = 0x1p-22 * fmax(fabs(p->range[axis][0]), fabs(p->range[axis][1]));
-		p->step[axis] = find_step(values, count, p->noise[axis]);
-	}
-	p->asked = true;
-}
-
-/*
- * Whether rounding of the texture coordinates may turn a triangle. On a grid each has moved by up to half a step. To
- * first order the determinant, by that of a corner in u, moves by half a step times the difference in v of both others;
- * of all three corners that is a step times the triangle's height along v, and u alike. So its height over its longest
- * side is at most the root of two steps.
- */
-static bool may_be_turned(const nt_surface *s, patches *p, size_t t)
-{
-	const double determinant = 2.0 * uv_area(s, t);
-	double size[2], error = 0.0;
-	const float *const uv[3] = {nt_side_texcoord(s, 3 * t), nt_side_texcoord(s, 3 * t + 1),
-		nt_side_texcoord(s, 3 * t + 2)};
-	if (nt_is_sliver(s, t))
-		return true;
-	for (int axis = 0; axis < 2; axis++)
-		size[axis] = fmax(uv[0][axis], fmax(uv[1][axis], uv[2][axis])) -
-			fmin(uv[0][axis], fmin(uv[1][axis], uv[2][axis]));
-	for (int axis = 0; axis < 2; axis++)
-		error += (p->range[axis][1] - p->range[axis][0]) / LEAST_STEPS * size[1 - axis];
-	if (!(determinant <= error))
-		return false;
-	find_grid(s, p);
-	error = 0.0;
-	for (int axis = 0; axis < 2; axis++) {
-		bool lies = p->step[axis] > 0.0;
-		for (int k = 0; k < 3 && lies; k++) {
-			const double all = uv[k][axis] - p->range[axis][0];
-			lies = fabs(all - round(all / p->step[axis]) * p->step[axis]) <= p->noise[axis];
-		}
-		error += lies ? p->step[axis] * size[1 - axis] : 0.0;
-	}
-	return determinant <= error;
 }
 
 /* ---- which patches are flipped ---- */
@@ -244,8 +124,8 @@ static void measure_patches(const nt_check *check, patches *p)
 			continue;
 		patch *one = &p->items[p->numbers[t]];
 		one->first = one->first == NT_NONE ? (uint32_t)t : one->first;
-		one->rounded = (one->rounded || !one->size.triangles) && may_be_turned(s, p, t);
-		add_extent(&one->size, &(extent){1, nt_triangle_area(s, t), uv_area(s, t)});
+		one->rounded = (one->rounded || !one->size.triangles) && nt_may_be_turned(s, &p->grid, t);
+		add_extent(&one->size, &(extent){1, nt_triangle_area(s, t), nt_uv_area(s, t)});
 	}
 	for (uint32_t i = 0; i < p->count; i++) {
 		const uint32_t first = p->items[i].first;
@@ -388,34 +268,78 @@ static bool is_seen(const nt_surface *s, patches *p, size_t t)
 		nt_side_texcoord(s, 3 * t + 2), 2));
 	const double square = longest_square(nt_side_position(s, 3 * t), nt_side_position(s, 3 * t + 1),
 		nt_side_position(s, 3 * t + 2), 3);
-	return 2.0 * uv_area(s, t) >= LEAST_HEIGHT * length && 2.0 * nt_triangle_area(s, t) > NEEDLE * square &&
-		!may_be_turned(s, p, t);
+	return 2.0 * nt_uv_area(s, t) >= LEAST_HEIGHT * length && 2.0 * nt_triangle_area(s, t) > NEEDLE * square &&
+		!nt_may_be_turned(s, &p->grid, t);
 }
 
-static void report_flipped(nt_check *check, patches *p)
+/* Areas of an island. */
+typedef struct wrongs {
+	double told, untold; /* of flipped triangles; untold also: of those that have no area in UV space */
+} wrongs;
+
+/*
+ * Whether the layout is in order but for the triangles that are told. Else a reader has other findings about it, and
+ * refuses this one: what counts against it is the rarer winding of every island, and in an island where some are told
+ * what else is wrong with it. By area, for many a small triangle is nothing beside a large one that is told.
+ */
+static bool is_in_order(const nt_check *check, const patches *p, const wrongs *islands, size_t told)
+{
+	double all_told = 0.0, others = 0.0;
+	for (size_t i = 0; i < check->facts->island_count; i++) {
+		all_told += islands[i].told;
+		others += fmin(p->islands[i][0].area, p->islands[i][1].area);
+		others += islands[i].told > 0.0 ? islands[i].untold : 0.0;
+	}
+	return others <= all_told && check->facts->inconsistent_edges <= told;
+}
+
+static void report_tally(nt_check *check, const nt_tally *tally)
+{
+	const nt_mesh *mesh = check->mesh;
+	char set[64] = "";
+	if (nt_format_is_gltf(check->scene->format))
+		snprintf(set, sizeof set, ", in UV set %u%s", mesh->texcoord_set,
+			mesh->untextured ? ", which no texture uses" : "");
+	nt_check_report_as(check, tally,
+		mesh->untextured ? NT_SEVERITY_INFO : nt_area_severity(check, tally->area),
+		"%.3g %% of the area of %zu%s", 100.0 * tally->area / check->total_area, check->surface.triangle_count,
+		set);
+}
+
+static nt_status report_flipped(nt_check *check, patches *p)
 {
 	nt_report_mesh *facts = check->facts;
 	const nt_surface *s = &check->surface;
 	nt_tally tally = {.code = NT_CODE_UV_FLIPPED_TRIANGLE};
-	double area = 0.0;
+	wrongs *islands = nt_scratch_alloc(check->scratch, facts->island_count, sizeof *islands);
+	if (!islands)
+		return NT_ERROR_MEMORY;
+	memset(islands, 0, facts->island_count * sizeof *islands);
 	for (size_t t = 0; t < s->triangle_count; t++) {
 		patch *one = p->numbers[t] == NT_NONE ? NULL : &p->items[p->numbers[t]];
+		const uint32_t island = check->islands[t];
+		if (!one && island != NT_NONE)
+			islands[island].untold += nt_triangle_area(s, t);
 		if (!one || !one->flipped)
 			continue;
 		nt_bit_set(check->flipped, t);
-		facts->islands[check->islands[t]].flipped[s->orientation[t] + 1]++;
+		facts->islands[island].flipped[s->orientation[t] + 1]++;
+		p->islands[island][s->orientation[t] > 0].area -= nt_triangle_area(s, t);
 		one->seen += one->reversed < one->sides && is_seen(s, p, t) ? nt_triangle_area(s, t) : 0.0;
 	}
 	for (size_t t = 0; (t = nt_bit_next(check->flipped, t, s->triangle_count)) < s->triangle_count; t++) {
-		const uint32_t island = check->islands[t] + 1;
-		if (!nt_is_visible(check, p->items[p->numbers[t]].seen) || !is_seen(s, p, t))
+		const uint32_t island = check->islands[t];
+		const bool told = nt_is_visible(check, p->items[p->numbers[t]].seen) && is_seen(s, p, t);
+		*(told ? &islands[island].told : &islands[island].untold) += nt_triangle_area(s, t);
+		if (!told)
 			continue;
-		tally.island = tally.count == 0 || tally.island == island ? island : 0;
+		tally.island = tally.count == 0 || tally.island == island + 1 ? island + 1 : 0;
 		nt_tally_triangle(check, &tally, t, NAN);
-		area += nt_triangle_area(s, t);
+		tally.area += nt_triangle_area(s, t);
 	}
-	nt_check_report_as(check, &tally, nt_area_severity(check, area), "%zu triangles, %.3g %% of the area,",
-		s->triangle_count, 100.0 * area / check->total_area);
+	if (is_in_order(check, p, islands, tally.count))
+		report_tally(check, &tally);
+	return NT_OK;
 }
 
 nt_status nt_check_flips(nt_check *check)
@@ -431,16 +355,13 @@ nt_status nt_check_flips(nt_check *check)
 		return status;
 	memset(check->flipped, 0, words * sizeof *check->flipped);
 	memset(check->twins, 0, words * sizeof *check->twins);
-	for (int axis = 0; axis < 2; axis++) {
-		double values[SAMPLES];
-		take_values(&check->surface, axis, values, p.range[axis]);
-	}
+	p.grid = nt_texcoord_grid_of(&check->surface);
 	measure_patches(check, &p);
 	choose_flipped(check, &p);
 	status = find_twins(check, &p);
 	if (status)
 		return status;
-	report_flipped(check, &p);
+	status = report_flipped(check, &p);
 	drop_mirror_edges(check);
-	return NT_OK;
+	return status;
 }

@@ -88,6 +88,7 @@ void nt_mesh_share(nt_mesh *mesh)
 	memcpy(mesh->wrap, own.wrap, sizeof mesh->wrap);
 	memcpy(mesh->wrap_offset, own.wrap_offset, sizeof mesh->wrap_offset);
 	mesh->texcoord_set = own.texcoord_set;
+	mesh->untextured = own.untextured;
 	mesh->texcoords_transformed = own.texcoords_transformed;
 	mesh->transforms_differ = own.transforms_differ;
 	mesh->transform_animated = own.transform_animated;

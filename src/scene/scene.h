@@ -233,6 +233,7 @@ typedef struct nt_mesh {
 	bool has_positions, has_normals, has_texcoords, has_tangents; /* texcoords: the set that is used */
 	const char *tangents_fault; /* why the tangents that it has cannot be read; NULL: they can */
 	uint32_t texcoord_set;   /* number of that set */
+	bool untextured;         /* it is a glTF's, and no texture of its materials is looked up with that set */
 	const char *asked_set;   /* the set that --uv asks for is not there, others are: a sentence; NULL */
 	nt_wrap wrap[2];         /* along u and v, of the texture that tangents serve */
 	float wrap_offset[2];    /* of its transform, v up, where it is mirrored: elsewhere an offset moves all alike */

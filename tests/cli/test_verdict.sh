@@ -32,6 +32,36 @@ exits 0
 run -q m.obj e.glb
 exits 0
 
+scene "a flipped triangle is told with its UV set, and is an info where no texture uses that"
+awk 'BEGIN { print "vn 0 0 1"
+	for (y = 0; y < 6; y++) for (x = 0; x < 6; x++) {
+		print "v", x, y, 0
+		print "vt", x == 5 && y == 0 ? "0.85 0.15" : x / 5 " " y / 5
+	}
+	for (y = 0; y < 5; y++) for (x = 1; x < 6; x++) {
+		a = 6 * y + x
+		printf "f %d/%d/1 %d/%d/1 %d/%d/1\nf %d/%d/1 %d/%d/1 %d/%d/1\n", a, a, a + 1, a + 1, a + 7, a + 7,
+			a, a, a + 7, a + 7, a + 6, a + 6
+	} }' >grid.obj
+run -q grid.obj grid.gltf
+while IFS='|' read -r severity uses material; do
+	gltf grid.gltf one 'Object.assign(g, {materials: ['"$material"'], textures: [{}]});
+		const a = g.meshes[0].primitives[0].attributes; a.TEXCOORD_1 = a.TEXCOORD_0; delete a.TANGENT'
+	run --check --uv=0 --fail-on=never one.gltf --report=one.json
+	is "$material $(value one.json '[(f["severity"], f["message"]) for f in r["files"][0]["findings"] if "FLIPPED" in f["code"]]')" \
+		"$material [('$severity', '1 triangle is flipped: 2 % of the area of 50, in UV set 0${uses:+, which no texture uses}')]"
+done <<-'END'
+	info|none|{}
+	info||{pbrMetallicRoughness: {baseColorTexture: {index: 0}}}
+	warning||{normalTexture: {index: 0}}
+	info|none|{normalTexture: {index: 0, texCoord: 1}}
+	warning||{normalTexture: {index: 0, texCoord: 1}, emissiveTexture: {index: 0}}
+	info|none|{occlusionTexture: {index: 0, extensions: {KHR_texture_transform: {texCoord: 1}}}}
+	info||{occlusionTexture: {index: 0, texCoord: 1, extensions: {KHR_texture_transform: {texCoord: 0}}}}
+	info||{extensions: {KHR_materials_sheen: {sheenColorTexture: {index: 0}}}}
+	warning||{extensions: {KHR_materials_anisotropy: {anisotropyStrength: 1}}}
+END
+
 # A map of bumps, their green times $2: as DirectX has it by default, -1: as glTF has it.
 green_down() {
 	python3 "$ROOT/tests/support/images.py" write "$1" 128 128 '(lambda u, v: (lambda r: tuple(round(127.5 + 127.5 * c / r) for c in (u, v * ('"${2-1}"'), 1.5)))(

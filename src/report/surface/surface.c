@@ -5,6 +5,7 @@
 #include "report/surface/surface.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include "topology/corners.h"
 
 /* Triangles by which vertices are prefetched before they are needed: costs nothing where neighbours are near. */
@@ -91,6 +92,14 @@ double nt_triangle_area(const nt_surface *s, size_t t)
 	return isfinite(area) ? area : 0.0;
 }
 
+double nt_uv_area(const nt_surface *s, size_t t)
+{
+	const float *a = nt_side_texcoord(s, 3 * t), *b = nt_side_texcoord(s, 3 * t + 1);
+	const float *c = nt_side_texcoord(s, 3 * t + 2);
+	return 0.5 * fabs(((double)b[0] - a[0]) * ((double)c[1] - a[1]) -
+		((double)b[1] - a[1]) * ((double)c[0] - a[0]));
+}
+
 /* det = sum u[k] (v[k + 1] - v[k + 2]), each coordinate off by half a unit in its last place. The three differences
  * along an axis have twice the range together: with the largest coordinate that is a bound, which most triangles are
  * far above. */
@@ -113,6 +122,129 @@ bool nt_is_sliver(const nt_surface *s, size_t t)
 		for (int axis = 0; axis < 2; axis++)
 			error += nt_half_unit(uv[k][axis]) *
 				fabs((double)uv[(k + 1) % 3][1 - axis] - uv[(k + 2) % 3][1 - axis]);
+	return determinant <= error;
+}
+
+/* ---- what rounding may have turned ---- */
+
+/* Corners of a mesh that are asked for its grid. */
+enum { SAMPLES = 1024 };
+
+/*
+ * A grid is coarser than what is told apart from the rounding of floats, 16 times, and has as many steps as bytes have
+ * or more: a sphere of 64 segments is no rounding. Any few numbers lie on some grid, within the rounding of floats;
+ * that eight do on one of up to 4 096 steps by chance has a probability of 2^-45.
+ */
+static const double COARSE = 16.0;
+enum { LEAST_STEPS = 255, LEAST_VALUES = 8 };
+
+static int compare_doubles(const void *a, const void *b)
+{
+	const double x = *(const double *)a, y = *(const double *)b;
+	return x < y ? -1 : x > y;
+}
+
+/*
+ * The step of which all differences of values are multiples, whose noise is given; 0: there is none. By Euclid: what is
+ * left of a difference is a smaller step, at most half as large. Its error shrinks with every value that is further
+ * away.
+ */
+static double find_step(double *values, size_t count, double noise)
+{
+	size_t distinct = 1;
+	qsort(values, count, sizeof *values, compare_doubles);
+	for (size_t i = 1; i < count; i++)
+		distinct += values[i] > values[i - 1] + noise;
+	const double range = count ? values[count - 1] - values[0] : 0.0;
+	double step = range, error = noise;
+	for (size_t i = 0; i < count && step > fmax(COARSE * noise, 4.0 * error);) {
+		const double all = values[i] - values[0], steps = round(all / step);
+		const double left = fabs(all - steps * step), most = noise + steps * error;
+		i = left <= most ? i + 1 : 0;
+		if (left > most) {
+			step = left;
+			error = most;
+		} else if (steps * error > noise) {
+			step = all / steps;
+			error = noise / steps;
+		}
+	}
+	const bool is_grid = distinct >= LEAST_VALUES && step > fmax(COARSE * noise, 4.0 * error);
+	return is_grid && range >= LEAST_STEPS * step ? step : 0.0;
+}
+
+/* Coordinates along an axis, of some corners, and their range. */
+static size_t take_values(const nt_surface *s, int axis, double values[SAMPLES], double range[2])
+{
+	const size_t sides = 3 * s->triangle_count, stride = (sides + SAMPLES - 1) / SAMPLES;
+	size_t count = 0;
+	range[0] = INFINITY;
+	range[1] = -INFINITY;
+	for (size_t side = 0; side < sides; side += stride) {
+		const double value = nt_side_texcoord(s, side)[axis];
+		if (!isfinite(value))
+			continue;
+		values[count++] = value;
+		range[0] = fmin(range[0], value);
+		range[1] = fmax(range[1], value);
+	}
+	return count;
+}
+
+/* Asked for once, if a triangle is so small that a grid may have turned it: values are put in order for that. */
+static void find_grid(const nt_surface *s, nt_texcoord_grid *grid)
+{
+	for (int axis = 0; axis < 2 && !grid->asked; axis++) {
+		double values[SAMPLES];
+		const size_t count = take_values(s, axis, values, grid->range[axis]);
+		/* of a difference: of two values, each made by two roundings to float */
+		grid->noise[axis] = 0x1p-22 * fmax(fabs(grid->range[axis][0]), fabs(grid->range[axis][1]));
+		grid->step[axis] = find_step(values, count, grid->noise[axis]);
+	}
+	grid->asked = true;
+}
+
+nt_texcoord_grid nt_texcoord_grid_of(const nt_surface *s)
+{
+	nt_texcoord_grid grid = {.asked = false};
+	for (int axis = 0; axis < 2; axis++) {
+		double values[SAMPLES];
+		take_values(s, axis, values, grid.range[axis]);
+	}
+	return grid;
+}
+
+/*
+ * On a grid each has moved by up to half a step. To
+ * first order the determinant, by that of a corner in u, moves by half a step times the difference in v of both others;
+ * of all three corners that is a step times the triangle's height along v, and u alike. So its height over its longest
+ * side is at most the root of two steps.
+ */
+bool nt_may_be_turned(const nt_surface *s, nt_texcoord_grid *grid, size_t t)
+{
+	const double determinant = 2.0 * nt_uv_area(s, t);
+	double size[2], error = 0.0;
+	const float *const uv[3] = {nt_side_texcoord(s, 3 * t), nt_side_texcoord(s, 3 * t + 1),
+		nt_side_texcoord(s, 3 * t + 2)};
+	if (nt_is_sliver(s, t))
+		return true;
+	for (int axis = 0; axis < 2; axis++)
+		size[axis] = fmax(uv[0][axis], fmax(uv[1][axis], uv[2][axis])) -
+			fmin(uv[0][axis], fmin(uv[1][axis], uv[2][axis]));
+	for (int axis = 0; axis < 2; axis++)
+		error += (grid->range[axis][1] - grid->range[axis][0]) / LEAST_STEPS * size[1 - axis];
+	if (!(determinant <= error))
+		return false;
+	find_grid(s, grid);
+	error = 0.0;
+	for (int axis = 0; axis < 2; axis++) {
+		bool lies = grid->step[axis] > 0.0;
+		for (int k = 0; k < 3 && lies; k++) {
+			const double all = uv[k][axis] - grid->range[axis][0];
+			lies = fabs(all - round(all / grid->step[axis]) * grid->step[axis]) <= grid->noise[axis];
+		}
+		error += lies ? grid->step[axis] * size[1 - axis] : 0.0;
+	}
 	return determinant <= error;
 }
 

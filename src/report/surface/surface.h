@@ -201,8 +201,21 @@ static inline double nt_half_unit(float x)
 /* Whether rounding of the texture coordinates to float may turn the sign of a triangle's area in UV space. */
 bool nt_is_sliver(const nt_surface *s, size_t triangle);
 
+/* The grid that texture coordinates of a mesh were rounded to: by Draco, KHR_mesh_quantization or a few decimals. */
+typedef struct nt_texcoord_grid {
+	double range[2][2];       /* of coordinates along an axis */
+	bool asked;               /* whether what follows is known */
+	double step[2], noise[2]; /* along an axis; step 0: there is no grid */
+} nt_texcoord_grid;
+
+nt_texcoord_grid nt_texcoord_grid_of(const nt_surface *s);
+
+/* Whether rounding of the texture coordinates, to float or to their grid, may turn a triangle. */
+bool nt_may_be_turned(const nt_surface *s, nt_texcoord_grid *grid, size_t triangle);
+
 /* The area of a triangle in space; 0 where it is not finite. */
 double nt_triangle_area(const nt_surface *s, size_t triangle);
+double nt_uv_area(const nt_surface *s, size_t triangle); /* the same of its texture coordinates */
 
 /* Whether two sides of one edge lie on each other in UV space. */
 static inline bool nt_sides_meet(const nt_surface *s, uint32_t a, uint32_t b)
