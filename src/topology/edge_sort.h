@@ -28,12 +28,12 @@ enum { NT_CELLS = 2048 };
 enum { NT_HALVINGS = 128 };
 
 /* The box of some rows; the last of each four is of no use. */
-typedef struct nt_box {
+typedef struct nt_row_box {
 	float low[4], high[4];
-} nt_box;
+} nt_row_box;
 
 /* The rule by which the published weld chooses an axis. */
-static inline unsigned nt_longest_axis(const nt_box *b)
+static inline unsigned nt_longest_axis(const nt_row_box *b)
 {
 	const float x = b->high[0] - b->low[0], y = b->high[1] - b->low[1], z = b->high[2] - b->low[2];
 	return y > x && y > z ? 1 : z > x ? 2 : 0;
@@ -47,7 +47,7 @@ typedef struct nt_welded_mesh {
 	const float *positions; /* [vertex_count] rows of three floats, of numbers that no corner has too; three
 	                           floats behind the last one can be read */
 	size_t step;		/* floats from one row to the next */
-	const nt_box *box;	/* of all rows; NULL: not known */
+	const nt_row_box *box;	/* of all rows; NULL: not known */
 	const nt_adjacency *adjacency; /* of all triangles, in one range; NULL: there is none */
 	nt_scratch *scratch;
 } nt_welded_mesh;

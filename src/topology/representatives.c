@@ -11,11 +11,11 @@
 #include <emmintrin.h>
 #endif
 
-static const nt_box nothing = {{FLT_MAX, FLT_MAX, FLT_MAX, FLT_MAX}, {-FLT_MAX, -FLT_MAX, -FLT_MAX, -FLT_MAX}};
+static const nt_row_box nothing = {{FLT_MAX, FLT_MAX, FLT_MAX, FLT_MAX}, {-FLT_MAX, -FLT_MAX, -FLT_MAX, -FLT_MAX}};
 
 /* Adds rows [0, count), or those of vertices[0, count), to a box; false if a coordinate is NaN. */
 static inline NT_ALWAYS_INLINE bool add_rows(
-	const float *rows, size_t step, const uint32_t *vertices, size_t count, nt_box *b)
+	const float *rows, size_t step, const uint32_t *vertices, size_t count, nt_row_box *b)
 {
 #if NT_VECTORS && defined(__SSE2__)
 	__m128 low = _mm_loadu_ps(b->low), high = _mm_loadu_ps(b->high), unordered = _mm_setzero_ps();
@@ -43,7 +43,7 @@ static inline NT_ALWAYS_INLINE bool add_rows(
 }
 
 /* Makes the grid of a box. */
-static bool set_grid(const nt_box *b, nt_grid *grid)
+static bool set_grid(const nt_row_box *b, nt_grid *grid)
 {
 	for (int i = 0; i < 3; i++)
 		if (!(b->low[i] > -FLT_MAX / 2 && b->high[i] < FLT_MAX / 2))
@@ -58,7 +58,7 @@ static bool set_grid(const nt_box *b, nt_grid *grid)
 bool nt_grid_make(const nt_welded_mesh *mesh, uint32_t extremes[6], nt_grid *grid)
 {
 	enum { BLOCK = 64 };
-	nt_box all = nothing;
+	nt_row_box all = nothing;
 	bool ordered = true;
 	size_t blocks[6] = {0}; /* where the sides are */
 	if (!extremes && mesh->box)
@@ -67,7 +67,7 @@ bool nt_grid_make(const nt_welded_mesh *mesh, uint32_t extremes[6], nt_grid *gri
 		return add_rows(mesh->positions, mesh->step, NULL, mesh->vertex_count, &all) && set_grid(&all, grid);
 	for (size_t v = 0; v < mesh->vertex_count; v += BLOCK) {
 		const size_t left = mesh->vertex_count - v;
-		nt_box box = all;
+		nt_row_box box = all;
 		ordered &= add_rows(
 			mesh->positions + mesh->step * v, mesh->step, NULL, left < BLOCK ? left : BLOCK, &box);
 		for (int i = 0; i < 3; i++) {
@@ -90,7 +90,7 @@ bool nt_grid_make(const nt_welded_mesh *mesh, uint32_t extremes[6], nt_grid *gri
 bool nt_grid_of_used(const nt_welded_mesh *mesh, nt_grid *grid)
 {
 	enum { BATCH = 16 }; /* triangles */
-	nt_box all = nothing;
+	nt_row_box all = nothing;
 	bool ordered = true;
 	for (size_t t = 0, count; t < mesh->triangle_count; t += count) {
 		uint32_t copy[3 * BATCH];
@@ -116,7 +116,7 @@ bool nt_cells_make(nt_scratch *scratch, nt_cell_vertex *vertices, size_t vertex_
 bool nt_cells_find_middle(const nt_cells *c, nt_part *p)
 {
 	enum { STEP = sizeof *c->vertices / sizeof *c->vertices->position };
-	nt_box b = nothing;
+	nt_row_box b = nothing;
 	(void)add_rows(c->vertices->position, STEP, c->order + p->vertices, p->vertex_count, &b);
 	p->axis = (uint8_t)nt_longest_axis(&b);
 	p->middle = 0.5f * (b.high[p->axis] + b.low[p->axis]);

@@ -62,7 +62,7 @@ typedef struct nt_fast {
 	nt_triangle_ranges ranges;
 	nt_deferred *deferred;       /* [ranges]; NULL: there is one */
 	void *small;                 /* of small.c */
-	const nt_box *box;       /* of all rows; NULL: not known */
+	const nt_row_box *box;       /* of all rows; NULL: not known */
 	uint64_t work;           /* of large groups that may split, so far: complex_solve.c */
 } nt_fast;
 

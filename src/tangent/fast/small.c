@@ -25,7 +25,7 @@ typedef struct small_room {
 	uint32_t *cursors, *narrow, *ids;
 	uint8_t *flags, *open;
 	size_t bounds[2];
-	nt_box box;
+	nt_row_box box;
 } small_room;
 
 static nt_memory take(char **at, size_t bytes)
