@@ -397,7 +397,6 @@ nt_status nt_pack_mesh(nt_packed *packed, const nt_report *report, uint32_t mesh
 	if (!status)
 		status = pack(&p);
 	if (!status) {
-		packed->raw_bytes = p.raw.size;
 		nt_deflate(p.raw.data, p.raw.size, &packed->bytes);
 		status = packed->bytes.failed ? NT_ERROR_MEMORY : NT_OK;
 	}

@@ -46,7 +46,6 @@ typedef struct nt_packed {
 	double texcoord_origin[2], texcoord_step;
 	nt_packed_array arrays[NT_PACKED_ARRAYS]; /* in the order of their bytes */
 	unsigned array_count;
-	size_t raw_bytes;            /* before they were deflated */
 	nt_buffer bytes;             /* deflated */
 } nt_packed;
 

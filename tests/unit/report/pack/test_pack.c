@@ -28,10 +28,13 @@ static const uint32_t *numbers_of(const unpacked *u, const char *name)
 static void unpack(unpacked *u, const nt_report *report, size_t most)
 {
 	assert_int_equal(nt_pack_mesh(&u->packed, report, 0, most), NT_OK);
-	unsigned char *raw = test_malloc(u->packed.raw_bytes), *at = raw;
+	size_t size = 0;
+	for (unsigned i = 0; i < NT_PACKED_ARRAYS; i++)
+		size += u->packed.arrays[i].planes * u->packed.arrays[i].count;
+	unsigned char *raw = test_malloc(size), *at = raw;
 	struct libdeflate_decompressor *d = libdeflate_alloc_decompressor();
 	assert_int_equal(libdeflate_deflate_decompress(d, u->packed.bytes.data, u->packed.bytes.size, raw,
-				 u->packed.raw_bytes, NULL), LIBDEFLATE_SUCCESS);
+				 size, NULL), LIBDEFLATE_SUCCESS);
 	libdeflate_free_decompressor(d);
 	for (unsigned i = 0; i < NT_PACKED_ARRAYS; i++) {
 		const nt_packed_array *a = &u->packed.arrays[i];
@@ -45,7 +48,6 @@ static void unpack(unpacked *u, const nt_report *report, size_t most)
 			u->numbers[i][n] = ((n ? u->numbers[i][n - 1] : 0) + step) & mask;
 		}
 	}
-	assert_int_equal(at - raw, u->packed.raw_bytes);
 	test_free(raw);
 	u->corners = test_malloc(3 * u->packed.triangle_count * sizeof *u->corners);
 	uint32_t next = 0;
