@@ -242,6 +242,11 @@ END
 within 5 300 extras.gltf out.gltf
 exits 0
 
+scene "10 MB of ordinary nodes and meshes take at most eight times their size"
+inputs gltf_named_nodes 80000 nodes.glb
+within 2 80 -q nodes.glb out.glb
+exits 0
+
 scene "an OBJ whose $blocks materials have two images each"
 python3 "$ROOT/tests/support/inputs.py" mtl_missing_images $blocks i.obj # and i.mtl
 within 4 400 -q i.obj i.gltf
