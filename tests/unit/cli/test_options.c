@@ -227,7 +227,7 @@ TEST(options_that_contradict_each_other_are_refused)
 	refuses("--output names the output of one input", WORDS("--check", "-o", "x", "a", "b"));
 	refuses("--update and --report", WORDS("--update", "--report=r.json", "a", "b"));
 	refuses("--buffers=embed", WORDS("--output-format=gltf", "a", "-"));
-	refuses("--verify", WORDS("--verify", "a", "-"));
+	refuses("--verify", WORDS("a", "-", "--verify"));
 	refuses("--draco=off", WORDS("--draco=off", "--draco-bits=14,12,12,12", "a", "b"));
 }
 

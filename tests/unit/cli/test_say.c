@@ -38,7 +38,8 @@ TEST(an_error_is_said_without_memory_too)
 		const char *file, *message, *said, *said_without;
 	} rows[] = {{"a\x1b.obj", "b\x1b", "nmtan: a\\x1b.obj:7: b\\x1b\n", "nmtan: a?.obj: b?\n"},
 		{"-", "b", "nmtan: standard input:7: b\n", "nmtan: standard input: b\n"},
-		{"", "b", "nmtan: b\n", "nmtan: b\n"}, {"a", "", "nmtan: a:7: no such file\n", "nmtan: a: no such file\n"}};
+		{"", "b", "nmtan: b\n", "nmtan: b\n"},
+		{"a", "", "nmtan: a:7: no such file\n", "nmtan: a: no such file\n"}};
 	for (size_t i = 0; i < 2 * sizeof rows / sizeof *rows; i++) {
 		nt_error error;
 		nt_fail_line(&error, NT_ERROR_MISSING, 7, "%s", rows[i / 2].message);
