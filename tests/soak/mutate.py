@@ -52,7 +52,7 @@ SUBJECTS = {
     'batch': ['batch', 'update', 'manifest', 'depfile', 'stale', 'limits', 'usage', 'system', 'memory'],
     'cli': ['transcript', 'usage', 'output', 'limits', 'choose', 'manifest', 'batch', 'diff', 'convert', 'verdict', 'manual',
             'update', 'depfile', 'report', 'modules'],
-    'ext': ['draco', 'meshopt', 'modules', 'textures', 'verify', 'texts'],
+    'ext': ['draco', 'meshopt', 'modules', 'textures', 'verify', 'texts', 'limits', 'memory'],
     'base': ['limits', 'batch', 'texts', 'damaged', 'output', 'manifest', 'report', 'system', 'memory'],
 }
 # Rooms whose unit tests are those of a room, too.
