@@ -65,10 +65,6 @@ static void skip_source(void *user, int count)
 {
 	source *s = user;
 	const size_t left = s->size - s->position;
-	if (count < 0) { /* bytes that were read too early */
-		s->position -= (size_t)-count < s->position ? (size_t)-count : s->position;
-		return;
-	}
 	s->beyond |= (size_t)count > left;
 	s->position += (size_t)count < left ? (size_t)count : left;
 }
