@@ -85,7 +85,7 @@ static nt_draco *decoded(const nt_draco_block *block)
 	return result;
 }
 
-/* A grid that was encoded and decoded. */
+/* A grid with a -0 that was encoded and decoded. */
 typedef struct coded {
 	grid g;
 	nt_draco_block block;
@@ -96,6 +96,7 @@ typedef struct coded {
 static void code_grid(coded *c, nt_draco_method method, int bits)
 {
 	make_grid(&c->g, method, bits);
+	c->g.positions[SIDE / 2][2] = -0.0f;
 	c->block = encoded(&c->g.mesh);
 	c->result = decoded(&c->block);
 	c->mesh = &c->result->mesh;
@@ -478,6 +479,7 @@ TEST(damaged_streams_are_refused)
 		nt_status status;
 	} rows[] = {{"", 0, NT_ERROR_INPUT}, {"DRACO\2\2\1\1\0\0", 11, NT_ERROR_INPUT},
 		{"DRACO\2\3\0\1\0\0", 11, NT_ERROR_UNSUPPORTED}, /* a point cloud */
+		{"DRACO\2\2\1\0\0\0\xff\xff\xff\xff\xff\1\3\1", 19, NT_ERROR_INPUT}, /* 36 bits */
 		/* 2^31 faces in a few bytes: sequential, faces and points as variable numbers */
 		{"DRACO\2\2\1\0\0\0\x80\x80\x80\x80\x08\x03\1", 18, NT_ERROR_TOO_LARGE}};
 	for (size_t i = 0; i < COUNT(rows); i++)
