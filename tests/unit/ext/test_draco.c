@@ -252,6 +252,8 @@ TEST(copied_points_have_the_values_of_others)
 		uint32_t copied[POINTS - OWN];
 		grid g, told;
 		make_grid(&g, (nt_draco_method)method, 11);
+		for (size_t i = 0; i < 3 * FACES; i++) /* no face has point 20: those behind it get other numbers */
+			(&g.indices[0][0])[i] += (&g.indices[0][0])[i] == 20;
 		for (uint32_t p = OWN; p < POINTS; p++) {
 			const uint32_t from = copied[p - OWN] = p % 7 * 10;
 			memcpy(g.normals[p], g.normals[from], sizeof *g.normals);

@@ -113,7 +113,8 @@ static void make_psd(const file_kind *kind, bytes *b)
 	put(b, kind->bits, 2, true);
 	put(b, 3, 2, true); /* RGB */
 	put(b, 0, 4, true);
-	put(b, 0, 4, true);
+	put(b, kind->variant, 4, true); /* bytes of resources */
+	put(b, 0, kind->variant, true);
 	put(b, 0, 4, true);
 	put(b, 0, 2, true); /* not packed */
 	for (unsigned channel = 0; channel < 3; channel++)
@@ -217,7 +218,7 @@ static const file_kind files[] = {
 	{"packed tga", make_tga, NT_IMAGE_TGA, 3, 8, 10, false},
 	{"bmp", make_bmp, NT_IMAGE_BMP, 3, 8, 0, false},
 	{"psd", make_psd, NT_IMAGE_PSD, 3, 8, 0, false},
-	{"psd of 16 bits", make_psd, NT_IMAGE_PSD, 3, 16, 0, false},
+	{"psd of 16 bits", make_psd, NT_IMAGE_PSD, 3, 16, 300, false},
 	{"tiff", make_tiff, NT_IMAGE_TIFF, 3, 8, COMPRESSION_LZW, false},
 	{"tiff of 16 bits", make_tiff, NT_IMAGE_TIFF, 1, 16, COMPRESSION_ADOBE_DEFLATE, false},
 	{"tiff of alpha and 16 bits", make_tiff, NT_IMAGE_TIFF, 4, 16, COMPRESSION_LZW, false},
@@ -660,6 +661,9 @@ TEST(decode_without_memory_is_an_error)
 			assert_int_equal(status, NT_ERROR_MEMORY);
 			assert_null(p.samples);
 		}
+		nt_pixels p; /* and what is damaged later is told as that */
+		nt_error error;
+		assert_int_equal(nt_image_decode(b.data, b.size / 2, &p, &error), NT_ERROR_INPUT);
 	}
 }
 
