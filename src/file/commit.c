@@ -21,7 +21,8 @@
  *   5  unlink a.new-D.bin                  M -> a.bin                   new
  *
  * Superseded content-named files (a-D.bin) follow the same steps, without 3, unlinked before 4. The staging main file
- * names them, so that the next run removes them if this one is killed.
+ * names them, so that the next run removes them if this one is killed. A power cut may leave one all the same: no sync
+ * is between.
  *
  * Until step 2 everything can be taken back, and is. From step 3 on a failure leaves a whole new set, under names
  * that say what they are: where link(2) or a rename is refused, the staging main file stays and the result says so.
