@@ -199,6 +199,7 @@ exists out/s/m.glb out/t/m.glb
 rm b/m.glb
 run -q -r -d none b
 exits 1
+says "'b/m.obj', 'b/s/m.obj' and 'b/t/m.obj' would all be written to 'none/m.glb'"
 says_not "in one folder"
 run -q -r -d none --keep-tree=b b
 exits 0

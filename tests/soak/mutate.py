@@ -49,7 +49,7 @@ SUBJECTS = {
     'obj': ['texts', 'materials', 'colors', 'convert', 'damaged', 'normals', 'origin', 'report'], 'ply': ['texts', 'convert', 'damaged', 'small_models', 'origin', 'normals'],
     'format': ['convert', 'verdict', 'textures', 'transcript', 'draco'], 'report': ['report', 'check', 'verdict', 'diff', 'report_folder', 'page'],
     'pipeline': ['convert', 'quads', 'normals', 'morphs', 'choose', 'report', 'manifest', 'textures'],
-    'batch': ['batch', 'update', 'manifest', 'depfile', 'stale', 'limits', 'usage', 'system', 'memory'],
+    'batch': ['batch', 'choose', 'update', 'manifest', 'depfile', 'stale', 'limits', 'usage', 'system', 'memory'],
     'cli': ['transcript', 'usage', 'output', 'limits', 'choose', 'manifest', 'batch', 'diff', 'convert', 'verdict', 'manual',
             'update', 'depfile', 'report', 'modules'],
     'ext': ['draco', 'meshopt', 'modules', 'textures', 'verify', 'texts', 'limits', 'memory'],
