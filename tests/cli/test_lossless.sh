@@ -126,6 +126,20 @@ done
 is "$(gltf alone.glb 'rows(g.meshes[0].primitives[0].attributes.TANGENT).slice(20, 40)')" \
 	"$(gltf pooled.glb 'rows(g.meshes[0].primitives[0].attributes.TANGENT).slice(20, 40)')"
 
+# A byte ends at 254: 255 restarts. Each square is mirrored across its middle, where it gets two copies.
+scene "indices get a wider type if their own highest needs it, not that of another primitive"
+for row in "251 5121,5121" "252 5121,5123" "253 5121,5123" "254 5123,5123"; do
+	gltf new squares "const count = ${row% *};" 'const of = (value) => Array.from({length: count}, (_, v) => value(v)).flat();
+		const quad = (v) => [v, v + 1, v + 3, v, v + 3, v + 2, v + 1, v + 4, v + 3, v + 1, v + 5, v + 4];
+		const attributes = {NORMAL: add("VEC3", 5126, of(() => [0, 0, 1])),
+			POSITION: add("VEC3", 5126, of((v) => [v % 6 < 2 ? v % 6 : v % 6 - 2, v % 6 < 2 ? 0 : 1, Math.floor(v / 6)])),
+			TEXCOORD_0: add("VEC2", 5126, of((v) => [[0, 0], [1, 0], [0, 1], [1, 1], [0, 1], [0, 0]][v % 6]))};
+		g.meshes = [{primitives: [0, 6].map((v) => ({attributes, indices: add("SCALAR", 5121, quad(v))}))}]'
+	run --only=all squares.gltf out.glb
+	exits 0
+	is "$(gltf out.glb 'g.meshes[0].primitives.map((p) => g.accessors[p.indices].componentType).join()')" ${row#* }
+done
+
 scene "vertices that nothing in the file backs are not welded, whatever number it claims"
 python3 - <<'END' >claims.gltf
 import json

@@ -483,6 +483,12 @@ run quad.obj m.mtl --output-format=glb
 exits 2
 says "the same file as the input m.mtl"
 same m.mtl before
+rm f.png
+cp "$data/bumps.png" f.png
+run quad.obj f.png --output-format=glb
+exits 2
+says "the same file as the input"
+same f.png "$data/bumps.png"
 mv plates.bin before
 mkfifo plates.bin
 run plates.gltf out.gltf

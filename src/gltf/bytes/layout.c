@@ -208,8 +208,6 @@ static nt_status put_zeros(const nt_byte_target *to, uint64_t size, nt_error *er
 static nt_status put_source(nt_gltf *document, nt_gltf_buffer *buffer,
 	const nt_byte_target *to, uint64_t begin, uint64_t end, nt_error *error)
 {
-	if (begin >= end)
-		return NT_OK;
 	const uint64_t there = buffer->size < begin ? begin : buffer->size < end ? buffer->size : end;
 	const size_t size = (size_t)(there - begin);
 	nt_status status = NT_OK;

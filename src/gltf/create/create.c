@@ -176,11 +176,11 @@ static uint32_t *number_of(composition *c, const nt_new_primitive *primitive)
 static nt_status plan_materials(composition *c, nt_error *error)
 {
 	nt_status status = nt_image_set_create(&c->images, &c->options, error);
-	for (size_t m = 0; m < c->scene->mesh_count; m++)
-		for (size_t p = 0; p < c->primitives[m].count && status == NT_OK; p++) {
+	for (size_t m = 0; m < c->scene->mesh_count && status == NT_OK; m++)
+		for (size_t p = 0; p < c->primitives[m].count; p++) {
 			const nt_new_primitive *primitive = &c->primitives[m].items[p];
 			if (is_textured(c, primitive))
-				status = nt_new_material_use(material_of(c, primitive), c->images, c->output, error);
+				nt_new_material_use(material_of(c, primitive), c->images);
 		}
 	/* The main file comes before its sidecars, and is none of the images that it refers to. */
 	if (status == NT_OK)

@@ -84,24 +84,19 @@ static image_entry *entry_of(const nt_image_set *set, uint32_t request)
 	return &set->entries[nt_textures_result(set->options.textures, request)];
 }
 
-nt_status nt_image_set_use(nt_image_set *set, const nt_material *material, const nt_map *map, nt_output *output,
-	nt_error *error)
+void nt_image_set_use(nt_image_set *set, const nt_material *material, const nt_map *map)
 {
 	image_entry *entry = entry_of(set, map->request);
 	/* only who asks for links gets one that leads to nothing */
 	if (!entry || entry->image->type == NT_IMAGE_OTHER ||
 		(entry->image->sources[0]->found == NT_IMAGE_MISSING && set->options.images != NT_IMAGES_LINK))
-		return NT_OK;
+		return;
 	entry->wants[map->placement.clamp] = true;
 	if (entry->used)
-		return NT_OK;
+		return;
 	entry->used = true;
 	entry->material = material;
 	entry->line = map->line;
-	nt_status status = NT_OK;
-	for (size_t i = 0; i < entry->image->source_count && !status; i++)
-		status = nt_output_protect(output, entry->image->sources[i]->path, NULL, error);
-	return status;
 }
 
 /* ---- adding ---- */

@@ -7,12 +7,10 @@
 
 #include <math.h>
 
-nt_status nt_new_material_use(const nt_material *material, nt_image_set *images, nt_output *output, nt_error *error)
+void nt_new_material_use(const nt_material *material, nt_image_set *images)
 {
-	nt_status status = NT_OK;
-	for (size_t i = 0; i < NT_MATERIAL_MAPS && !status; i++)
-		status = nt_image_set_use(images, material, &material->maps[i], output, error);
-	return status;
+	for (size_t i = 0; i < NT_MATERIAL_MAPS; i++)
+		nt_image_set_use(images, material, &material->maps[i]);
 }
 
 /* ---- numbers and textures ---- */

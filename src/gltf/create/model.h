@@ -159,10 +159,9 @@ nt_status nt_image_set_create(nt_image_set **set, const nt_write_options *option
 /* NULL is allowed. */
 void nt_image_set_free(nt_image_set *set);
 
-/* Says that the document uses the image that the request of a material's map led to, and protects its file from the
- * output. NT_NONE and images without result are passed over. Returns NT_OK or NT_ERROR_MEMORY. */
-nt_status nt_image_set_use(nt_image_set *set, const nt_material *material, const nt_map *map, nt_output *output,
-	nt_error *error);
+/* Says that the document uses the image that the request of a material's map led to. NT_NONE and images without result
+ * are passed over. */
+void nt_image_set_use(nt_image_set *set, const nt_material *material, const nt_map *map);
 
 /* Adds what is used to the document: images and textures. An embedded one is opened when the buffer is written, so that
  * the set has to live until then. Others that need a file of their own are written: what was made, what is to be
@@ -185,8 +184,8 @@ nt_model_use nt_image_set_texture(const nt_image_set *set, const nt_map *map);
 
 /* ---- materials: material.c ---- */
 
-/* Says that the document uses the images of a material. Returns what nt_image_set_use() does. */
-nt_status nt_new_material_use(const nt_material *material, nt_image_set *images, nt_output *output, nt_error *error);
+/* Says that the document uses the images of a material. */
+void nt_new_material_use(const nt_material *material, nt_image_set *images);
 
 /* Adds it to the document, after the images; its extensions are listed as used. images: NULL: without textures and what
  * else takes texture coordinates. Returns its number. */
