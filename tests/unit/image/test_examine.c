@@ -254,6 +254,18 @@ TEST(what_is_no_surface_says_nothing)
 		}
 }
 
+/* Vectors of half the length, whose slopes are those of a surface with green down, do not count. */
+TEST(what_is_no_unit_vector_says_nothing)
+{
+	nt_pixels p = make(hills, 1, 8), down = make(hills, -1, 8);
+	for (size_t i = 0; i < 3 * SIDE * SIDE / 2; i++)
+		((uint8_t *)p.samples)[i] = (uint8_t)(64 + ((uint8_t *)down.samples)[i] / 2);
+	nt_pixels_free(&down);
+	const nt_normal_facts facts = facts_of(p);
+	assert_int_equal(facts.green, NT_GREEN_UP);
+	assert_int_equal(facts.blocks_down, 0);
+}
+
 TEST(examining_without_memory_is_an_error)
 {
 	nt_pixels p = make(hills, 1, 8);
