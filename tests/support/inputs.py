@@ -151,6 +151,23 @@ def gltf_grids(n):
     return glb(doc, b''.join(parts))
 
 
+@quantity(most=0)
+def gltf_hundred(n):
+    """A hundred grids of n megabytes, of which the 38th has a normal texture, or none where SIDE is 1. Prints where that one's
+    attributes and indices lie in the file."""
+    doc, size = document(), int((n * 1e4 / 56) ** 0.5)
+    piece = grid(doc, size - 1, size)
+    views, accessors, every = doc['bufferViews'], doc['accessors'], range(100)
+    doc['bufferViews'] = [dict(v, byteOffset=v['byteOffset'] + len(piece) * i) for i in every for v in views]
+    doc['accessors'] = [dict(a, bufferView=a['bufferView'] + 4 * i) for i in every for a in accessors]
+    doc['meshes'][0]['primitives'] = [{'attributes': {'POSITION': 4 * i, 'NORMAL': 4 * i + 1, 'TEXCOORD_0': 4 * i + 2},
+                                       'indices': 4 * i + 3, 'material': int(i == 37 and side != 1)} for i in every]
+    doc |= {'materials': [{}] + doc['materials'], 'textures': [{}], 'images': []}
+    path = glb(doc, piece * 100)
+    print(os.path.getsize(path) - 63 * len(piece), os.path.getsize(path) - 62 * len(piece))
+    return path
+
+
 @quantity('IN OUT.glb', 'IN OUT.gltf', '--buffers=copy IN out/o.gltf', '--only=all --verify IN OUT.glb', most=10000)
 def gltf_buffers_of_one_file(n):
     doc = document()

@@ -55,12 +55,12 @@ static size_t count_touched(size_t begin, size_t end)
 }
 
 /* Makes the file and runs it. *begin, *end receive the bytes of the 38th primitive. */
-static void run(const char *which, size_t *begin, size_t *end, size_t expected_solved)
+static void run(size_t *begin, size_t *end, size_t expected_solved)
 {
 	char command[800];
 	const char *megabytes = getenv("NT_HUNDRED_MB");
-	snprintf(command, sizeof command, "python3 tests/support/gltf_hundred.py %s %s %s", in_folder("in.glb"),
-		megabytes ? megabytes : "30", which);
+	snprintf(command, sizeof command, "python3 tests/support/inputs.py gltf_hundred %s %s %d",
+		megabytes ? megabytes : "30", in_folder("in.glb"), expected_solved ? 0 : 1);
 	FILE *said = popen(command, "r");
 	assert_non_null(said);
 	assert_int_equal(fscanf(said, "%zu %zu", begin, end), 2);
@@ -92,7 +92,7 @@ static void run(const char *which, size_t *begin, size_t *end, size_t expected_s
 TEST(one_primitive_of_a_hundred_is_read)
 {
 	size_t begin, end;
-	run("one", &begin, &end, 1);
+	run(&begin, &end, 1);
 	/* Every page of its own, as many for the JSON as that is long (what is before the first primitive,
 	 * which has the same size as the 38th), and no more. */
 	const size_t own = count_touched(begin, end), size = end - begin;
@@ -104,7 +104,7 @@ TEST(one_primitive_of_a_hundred_is_read)
 TEST(nothing_is_read_where_nothing_is_needed)
 {
 	size_t begin, end;
-	run("none", &begin, &end, 0);
+	run(&begin, &end, 0);
 	const size_t first = begin - 37 * (end - begin);
 	assert_true(count_touched(0, map_size) <= first / PAGE + 2);
 }
