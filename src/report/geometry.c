@@ -363,16 +363,18 @@ static void report_triangles(nt_check *check, nt_part *all, size_t from_neighbou
 		no_area->code = NT_CODE_UV_UNMAPPED;
 		nt_check_report_as(check, no_area, severities[NO_AREA], NULL);
 	} else if (nt_is_visible(check, no_area->area)) {
-		/* each triangle has three, so that one of both is there */
+		/* nobody gets any where none are made */
+		const bool made = check->mesh->decision == NT_DECISION_SOLVE;
 		char neighbours[80] = "", normals[80] = "";
-		if (from_neighbour)
-			snprintf(neighbours, sizeof neighbours, "%zu %s a neighbour's tangent", from_neighbour,
+		if (made && from_neighbour)
+			snprintf(neighbours, sizeof neighbours, "; %zu %s a neighbour's tangent", from_neighbour,
 				from_neighbour == 1 ? "corner takes" : "corners take");
-		if (from_normal)
-			snprintf(normals, sizeof normals, "%zu %s a tangent made from the normal", from_normal,
+		if (made && from_normal)
+			snprintf(normals, sizeof normals, "%s %zu %s a tangent made from the normal",
+				from_neighbour ? "," : ";", from_normal,
 				from_normal == 1 ? "corner gets" : "corners get");
-		nt_check_report_as(check, no_area, severities[NO_AREA], "%.3g %% of the area; %s%s%s",
-			100.0 * no_area->area / total, neighbours, *neighbours && *normals ? ", " : "", normals);
+		nt_check_report_as(check, no_area, severities[NO_AREA], "%.3g %% of the area%s%s",
+			100.0 * no_area->area / total, neighbours, normals);
 	}
 
 	if (nt_is_visible(check, tallies[NEAR].area))
