@@ -62,24 +62,28 @@ TEST(tangents_follow_u_and_w_tells_the_mirrored_side)
 }
 
 /* The two vertices of the seam, 1 and 2, get a copy each, in the order in which the right side meets
- * them; nothing else changes. */
+ * them; nothing else changes. A solve with split gives the same, and both count copies. */
 static void check_split(const nmtan_options *options)
 {
 	float tangents[12][4], vertex_tangents[18][4];
-	uint32_t indices[12], sources[12];
+	uint32_t indices[12], sources[12], copy_counts[6];
+	const uint32_t expected[12] = {0, 1, 2, 0, 2, 3, 6, 4, 5, 6, 5, 7}, expected_counts[6] = {0, 1, 1, 0, 0, 0};
 	const nmtan_output output = {.struct_bytes = sizeof output, .tangents = &tangents[0][0]};
 	assert_int_equal(nmtan_tangents(&mesh, options, &output, NULL), NMTAN_OK);
-	nmtan_split_output split = {.struct_bytes = sizeof split, .indices = indices, .sources = sources,
-		.source_capacity = 12,
-		.vertex_tangents = &vertex_tangents[0][0]};
-	assert_int_equal(nmtan_split(&mesh, &tangents[0][0], options, &split), NMTAN_OK);
-	const uint32_t expected[12] = {0, 1, 2, 0, 2, 3, 6, 4, 5, 6, 5, 7};
-	assert_int_equal(split.source_count, 2);
-	assert_int_equal(sources[0], 1);
-	assert_int_equal(sources[1], 2);
-	assert_memory_equal(indices, expected, sizeof expected);
-	for (int c = 0; c < 12; c++)
-		assert_memory_equal(vertex_tangents[indices[c]], tangents[c], sizeof tangents[c]);
+	for (int solved = 0; solved < 2; solved++) {
+		nmtan_split_output split = {.struct_bytes = sizeof split, .indices = indices, .sources = sources,
+			.source_capacity = 12, .vertex_tangents = &vertex_tangents[0][0], .copy_counts = copy_counts};
+		memset(copy_counts, 0xff, sizeof copy_counts);
+		assert_int_equal(solved ? nmtan_vertex_tangents(&mesh, options, &split, NULL)
+					: nmtan_split(&mesh, &tangents[0][0], options, &split), NMTAN_OK);
+		assert_int_equal(split.source_count, 2);
+		assert_int_equal(sources[0], 1);
+		assert_int_equal(sources[1], 2);
+		assert_memory_equal(indices, expected, sizeof expected);
+		assert_memory_equal(copy_counts, expected_counts, sizeof expected_counts);
+		for (int c = 0; c < 12; c++)
+			assert_memory_equal(vertex_tangents[indices[c]], tangents[c], sizeof tangents[c]);
+	}
 }
 
 TEST(seam_vertices_are_split_and_the_rest_stays)
@@ -114,26 +118,6 @@ TEST(copies_are_counted_before_there_is_room_for_them)
 	assert_memory_equal(copy_counts, expected, sizeof expected);
 	split.source_capacity = 2;
 	assert_int_equal(nmtan_split(&mesh, &tangents[0][0], &mikktspace, &split), NMTAN_ERROR_CAPACITY);
-}
-
-/* nmtan_vertex_tangents() counts them too. */
-static void check_counts(const nmtan_options *options)
-{
-	uint32_t indices[12], sources[12], copy_counts[6];
-	float vertex_tangents[18][4];
-	nmtan_split_output split = {.struct_bytes = sizeof split, .indices = indices, .sources = sources,
-		.source_capacity = 12,
-		.vertex_tangents = &vertex_tangents[0][0], .copy_counts = copy_counts};
-	memset(copy_counts, 0xff, sizeof copy_counts);
-	assert_int_equal(nmtan_vertex_tangents(&mesh, options, &split, NULL), NMTAN_OK);
-	const uint32_t expected[6] = {0, 1, 1, 0, 0, 0};
-	assert_memory_equal(copy_counts, expected, sizeof expected);
-}
-
-TEST(a_solve_with_split_counts_copies)
-{
-	check_counts(&mikktspace);
-	check_counts(&area);
 }
 
 /* ---- interleaved, in place ---- */
