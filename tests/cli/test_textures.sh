@@ -74,6 +74,13 @@ run quad.obj quad.gltf
 exits 0
 is "$(images rows "$(gltf quad.gltf 'g.images[0].uri' | tr -d '"')")" \
 	"[[[0,0,255],[100,100,155],[200,200,55]],[[1,1,254],[101,101,154],[201,201,54]]]"
+# of a grey and two things more the grey
+PYTHONPATH=$ROOT/tests/support python3 -c "import images
+open('g.tif', 'wb').write(images.tif_of(bytes(range(12)), b'', [(256, 4, 1, 2), (257, 4, 1, 2), (258, 3, 1, 8), (259, 3, 1, 1),
+	(262, 3, 1, 1), (273, 4, 1, 8), (277, 3, 1, 3), (278, 4, 1, 2), (279, 4, 1, 12)]))"
+quad "map_Kd g.tif"
+run quad.obj quad.gltf
+is "$(images rows g.png)" "[[[0,0,0,255],[3,3,3,255]],[[6,6,6,255],[9,9,9,255]]]"
 
 scene "a name that is taken by another file stays with that"
 images write n.tga 32 16 "$bumps"
