@@ -41,6 +41,14 @@ static const nt_map *map_of(const nt_material *m, enum nt_slot slot)
 	return slot ? &m->normal_map : &m->base_color_map;
 }
 
+/* The material of a primitive if it names a map for the slot; NULL: it does not. */
+static const nt_material *material_of(const nt_scene *scene, const nt_mesh *mesh, size_t primitive, enum nt_slot slot)
+{
+	const uint32_t index = mesh->primitives[primitive].material;
+	const nt_material *m = index < scene->material_count ? &scene->materials[index] : NULL;
+	return m && map_of(m, slot)->name && *map_of(m, slot)->name ? m : NULL;
+}
+
 static nt_status open_named(nt_normal_map *map, const nt_scene *scene, const nt_material *m, enum nt_slot slot,
 	const nt_image_places *searched, nt_error *error)
 {
@@ -62,9 +70,8 @@ static nt_status open_of_materials(nt_normal_map *map, const nt_scene *scene, co
 {
 	nt_status status = NT_OK;
 	for (size_t i = 0; i < mesh->primitive_count && !status && !map->bytes; i++) {
-		const uint32_t index = mesh->primitives[i].material;
-		const nt_material *m = index < scene->material_count ? &scene->materials[index] : NULL;
-		if (m && map_of(m, slot)->name && *map_of(m, slot)->name)
+		const nt_material *m = material_of(scene, mesh, i, slot);
+		if (m)
 			status = without_map(open_named(map, scene, m, slot, searched, error));
 	}
 	return status;
@@ -73,9 +80,8 @@ static nt_status open_of_materials(nt_normal_map *map, const nt_scene *scene, co
 const nt_map *nt_normal_map_named(const nt_scene *scene, const nt_mesh *mesh, enum nt_slot slot)
 {
 	for (size_t i = 0; i < mesh->primitive_count; i++) {
-		const uint32_t index = mesh->primitives[i].material;
-		const nt_material *m = index < scene->material_count ? &scene->materials[index] : NULL;
-		if (m && map_of(m, slot)->name && *map_of(m, slot)->name)
+		const nt_material *m = material_of(scene, mesh, i, slot);
+		if (m)
 			return map_of(m, slot);
 	}
 	return NULL;
@@ -311,11 +317,10 @@ static color_name color_of(const nt_scene *scene, const nt_mesh *mesh, size_t pr
 			t[2] == 0 && t[3] == 0 && t[4] == 1 && t[5] == 0);
 		return name;
 	}
-	const uint32_t index = mesh->primitives[primitive].material;
-	const nt_map *map = index < scene->material_count ? &scene->materials[index].base_color_map : NULL;
-	if (map && map->name && *map->name) {
-		name = (color_name){.text = map->name, .library = scene->materials[index].library};
-		*lies_plain &= !map->placement.moved;
+	const nt_material *m = material_of(scene, mesh, primitive, 0);
+	if (m) {
+		name = (color_name){.text = m->base_color_map.name, .library = m->library};
+		*lies_plain &= !m->base_color_map.placement.moved;
 	}
 	return name;
 }
