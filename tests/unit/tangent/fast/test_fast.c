@@ -106,24 +106,6 @@ enum { NASTY_COUNT = 500, ALL_GRIDS = 0 };
 enum { NASTY_COUNT = 2000, ALL_GRIDS = 1 };
 #endif
 
-/* UVs in one point, or on a line, of every triangle: no corner has a tangent before repair. */
-TEST(flat_uvs_are_repaired_as_by_the_definition)
-{
-	for (uint64_t seed = 0; seed < 60; seed++) {
-		nt_nasty nasty;
-		nt_nasty_make(seed, &nasty);
-		nmtan_mesh mesh = nt_filled(&nasty.mesh);
-		float *uv = calloc(2 * mesh.vertex_count + 1, sizeof *uv);
-		for (size_t v = 0; seed % 2 && v < mesh.vertex_count; v++)
-			uv[2 * v] = (float)v;
-		mesh.texcoords = uv;
-		mesh.texcoord_stride_bytes = 2 * sizeof *uv;
-		assert_int_equal(compare_repairs("flat", &mesh, nasty.corner_count), 0);
-		free(uv);
-		nt_nasty_free(&nasty);
-	}
-}
-
 TEST(nasty_meshes_are_byte_identical)
 {
 	const uint64_t from = environment("NT_NASTY_FROM", 0), count = environment("NT_NASTY_COUNT", NASTY_COUNT);
@@ -474,49 +456,6 @@ TEST(what_is_around_faults_is_seen)
 			.vertex_count = SHEET * SHEET + 2, .positions = p[0], .normals = n[0], .texcoords = t[0],
 			.indices = indices}, NMTAN_REPAIR_ON);
 	}
-}
-
-/* Beside an ordinary sheet, triangles that give nothing: of an area that is too small for floats, with two corners at
- * one position, with texture coordinates along a line or two that are the same. Some have an orientation all the same,
- * and repair takes their directions. One gives a direction along a normal. */
-TEST(what_gave_nothing_is_around_faults)
-{
-	enum { SIDE = 5, CELLS_HERE = (SIDE - 1) * (SIDE - 1), OWN = SIDE * SIDE, VERTICES = OWN + 16, MID = OWN / 2 };
-	static const struct {
-		unsigned char at[3];
-		float t[3][2];
-	} added[] = {
-		{{0, 1, 2}, {{0, 0}, {1e-25f, 0}, {0, 1e-25f}}}, {{0, 2, 3}, {{0, 0}, {0, 1e-25f}, {0, 0}}},
-		{{4, 5, 6}, {{0, 0}, {1, 1}, {0, 1}}}, {{4, 6, 7}, {{0, 0}, {0, 1}, {0, 1}}},
-		{{8, 9, 10}, {{0, 0}, {1, 1}, {3, 3}}}, {{11, 12, 13}, {{0, 0}, {0, 0.1f}, {0, 0.7f}}},
-	};
-	float p[VERTICES][3] = {{0}}, n[VERTICES][3] = {{0}}, t[VERTICES][2] = {{0}};
-	unsigned indices[6 * CELLS_HERE + 3 * (sizeof added / sizeof *added + 1)], count = 0;
-	for (unsigned i = 0; i < VERTICES; i++) {
-		n[i][2] = 1;
-		memcpy(p[i], (float[3]){(float)(i % SIDE), (float)(i / SIDE) + 2 * (float)(i % SIDE), 0}, sizeof *p);
-		memcpy(t[i], (float[2]){(float)(i % SIDE), (float)(i / SIDE)}, sizeof *t);
-		const unsigned cell[6] = {i, i + 1, i + SIDE + 1, i, i + SIDE + 1, i + SIDE};
-		if (i % SIDE + 1 < SIDE && i + SIDE < OWN)
-			memcpy(indices + 6 * count++, cell, sizeof cell);
-	}
-	count *= 2;
-	memcpy(p[OWN + 5], p[OWN + 4], sizeof *p);
-	for (size_t i = 0; i < sizeof added / sizeof *added; i++, count++)
-		for (int k = 0; k < 3; k++) {
-			indices[3 * count + (unsigned)k] = OWN + added[i].at[k];
-			memcpy(t[OWN + added[i].at[k]], added[i].t[k], sizeof *t);
-		}
-	/* one that touches the sheet, and whose u runs along the normal there */
-	memcpy(indices + 3 * count++, (unsigned[3]){MID, OWN + 14, OWN + 15}, 3 * sizeof *indices);
-	memcpy(p[OWN + 14], (float[3]){p[MID][0], p[MID][1], 1}, sizeof *p);
-	memcpy(p[OWN + 15], (float[3]){p[MID][0] + 1, p[MID][1], 0}, sizeof *p);
-	memcpy(n[OWN + 14], (float[3]){0, 1, 0}, sizeof *n);
-	memcpy(n[OWN + 15], (float[3]){0, 1, 0}, sizeof *n);
-	memcpy(t[OWN + 14], (float[2]){t[MID][0] + 1, t[MID][1]}, sizeof *t);
-	memcpy(t[OWN + 15], (float[2]){t[MID][0], t[MID][1] + 1}, sizeof *t);
-	compare_calls(&(nmtan_mesh){.struct_bytes = sizeof(nmtan_mesh), .face_count = count, .vertex_count = VERTICES,
-		.positions = p[0], .normals = n[0], .texcoords = t[0], .indices = indices}, NMTAN_REPAIR_ON);
 }
 
 /* Beside a sheet, triangles without a UV area, most of whose corners have nothing around them: these take a tangent of
