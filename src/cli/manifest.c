@@ -141,7 +141,7 @@ static void append_codes(nt_buffer *out, const char *key, const size_t counts[NT
 static void append_sizes(nt_buffer *out, const nt_summary *s, bool check)
 {
 	size_t triangles = s->triangle_count, before = s->vertex_count, split = s->appended_tangents;
-	size_t after = before + s->appended_normals + split;
+	size_t after = before + s->appended_normals + split + s->made.copies;
 	if (check && s->report && !s->report->failure) {
 		triangles = before = after = split = 0;
 		for (size_t i = 0; i < s->report->mesh_count; i++) {

@@ -350,13 +350,14 @@ static void append_seconds(nt_buffer *out, double seconds)
 
 static void append_vertices(nt_buffer *out, const nt_summary *s)
 {
-	const size_t added = s->appended_normals + s->appended_tangents;
+	const size_t split = s->appended_normals + s->appended_tangents, added = split + s->made.copies;
 	const nt_phrase phrases[] = {
 		{added, " -> ", NULL, ""},
 		{added ? s->vertex_count + added : 0, "", "", ""},
 		{1, " vertices", NULL, ""},
 		{s->appended_tangents, " (+", "", " where tangents differ"},
 		{s->appended_normals, s->appended_tangents ? ", +" : " (+", "", " where made normals differ"},
+		{s->made.copies, split ? ", +" : " (+", "", " where primitives meet"},
 		{added, ")", NULL, ""}};
 	nt_buffer_format(out, ", %zu", s->vertex_count);
 	nt_message_phrases(out, phrases, sizeof phrases / sizeof *phrases);

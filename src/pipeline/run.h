@@ -141,7 +141,7 @@ typedef struct nt_summary {
 	size_t mesh_count;       /* meshes (glTF: primitives) in the input */
 	size_t solved_count;     /* of them, those that got tangents */
 	struct {
-		size_t count, solved, skipped[NT_DECISION_COUNT];
+		size_t count, solved, skipped[NT_DECISION_COUNT], copies;
 	} made;                  /* the same of the primitives of a new glTF; count 0: it is none */
 	size_t repaired;         /* tangents of corners: what repair made of computed or, with --existing=repair, of the
 	                            input's own */

@@ -58,6 +58,7 @@ static void count_written(nt_summary *s, const nt_scene *scene, const nt_setting
 		s->shaded_copies += shaded ? mesh->vertex_count - mesh->source_vertex_count : 0;
 		s->made.count += mesh->made_primitives;
 		s->made.solved += nt_mesh_gets_tangents(mesh) ? mesh->made_primitives : 0;
+		s->made.copies += nt_mesh_gets_tangents(mesh) ? mesh->made_copies : 0;
 		s->made.skipped[mesh->decision] += nt_mesh_is_wanted(mesh) ? 0 : mesh->made_primitives;
 	}
 }

@@ -306,6 +306,7 @@ typedef struct nt_mesh {
 	size_t primitive_count;
 	const char *const *groups; /* names of its primitives' groups, each a mesh of an output; NULL: none */
 	size_t made_primitives;    /* of a new glTF that it has become; 0: it is in none */
+	size_t made_copies;        /* vertices that these have more than the mesh, since two of them use one */
 
 	/* vertices that making normals appended: vertex source_vertex_count + i is a copy of
 	 * vertex_sources[i], with another normal */

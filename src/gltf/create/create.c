@@ -65,7 +65,13 @@ static nt_status plan_primitives(composition *c, nt_error *error)
 		if (!c->records[m])
 			return nt_fail_memory(error);
 		count += c->primitives[m].count;
-		scene->meshes[m].made_primitives = c->primitives[m].count;
+		nt_mesh *mesh = &scene->meshes[m];
+		mesh->made_primitives = c->primitives[m].count;
+		size_t vertices = 0;
+		for (size_t i = 0; i < mesh->made_primitives; i++)
+			vertices += c->primitives[m].items[i].vertex_count;
+		const size_t own = mesh->vertex_count + mesh->split.source_count;
+		mesh->made_copies = mesh->made_primitives > 1 && vertices > own ? vertices - own : 0;
 	}
 	if (!count)
 		return nt_fail(error, NT_ERROR_UNSUPPORTED, "found no faces, expected a mesh");
