@@ -112,24 +112,25 @@ exits 0
 is "$(state second.gltf)" "$before"
 
 scene "a file that stands in the way stays, and repeated runs pile up nothing"
-echo somebody >o.bin
-run "$data/plates.gltf" o.gltf
+mkdir out
+echo somebody >out/o.bin
+run "$data/plates.gltf" out/o.gltf
 exits 0
 says "o.bin is another file, so ours is o-"
-is "$(cat o.bin)" somebody
-first=$(state o.gltf) list=$(ls)
-run "$data/plates.gltf" o.gltf
+is "$(cat out/o.bin)" somebody
+first=$(state out/o.gltf) list=$(ls out)
+run "$data/plates.gltf" out/o.gltf
 exits 0
-is "$(ls)" "$list"
-is "$(state o.gltf)" "$first"
+is "$(ls out)" "$list"
+is "$(state out/o.gltf)" "$first"
 # with another result the file of the earlier one goes: this main file alone referred to it
-run --bitangents "$data/plates.gltf" o.gltf
+run --bitangents "$data/plates.gltf" out/o.gltf
 exits 0
-is "$(ls | wc -l)" 4
-is "$(cat o.bin)" somebody
-run "$data/plates.gltf" o.gltf
-is "$(ls)" "$list"
-is "$(state o.gltf)" "$first"
+is "$(ls out | wc -l)" 4
+is "$(cat out/o.bin)" somebody
+run "$data/plates.gltf" out/o.gltf
+is "$(ls out)" "$list"
+is "$(state out/o.gltf)" "$first"
 
 scene "a .bin of ours is replaced under its own name, one that was changed since is not"
 run --bitangents "$data/plates.gltf" o.gltf
