@@ -618,7 +618,9 @@ nt_status nt_options_parse(int argc, char **argv, nt_command *command, nt_error 
 		const char *next = i + 1 < argc ? argv[i + 1] : NULL;
 		int used = 1;
 		nt_status status = NT_OK;
-		if (!options || word[0] != '-' || !word[1])
+		if (!word[0])
+			status = nt_fail(error, NT_ERROR_USAGE, "'' is no name of a file");
+		else if (!options || word[0] != '-' || !word[1])
 			status = nt_name_is_too_long(argv[kept++] = word) ? refuse_long(&p, word) : NT_OK;
 		else if (strcmp(word, "--") == 0)
 			options = false;

@@ -31,6 +31,9 @@ exits 1
 says "unknown option '-V'; did you mean --version?"
 run -qV
 says "unknown option '-V' in '-qV'; did you mean --version?"
+run --check "" # an empty variable: "no such file" would have no name
+exits 1
+says "'' is no name of a file"
 
 scene "-h is one screen, whose options exist and whose eight examples run as they stand"
 run -h
