@@ -108,7 +108,7 @@ static void text_mesh(const nt_report_diff *diff, const nt_mesh_change *change, 
 		change->matched, change->moved_texcoords);
 	put_tangents(diff, change, out);
 	if (change->turned)
-		nt_buffer_format(out, " at (%.6g %.6g %.6g)", (double)change->worst_position[0],
+		nt_buffer_format(out, "; most turned at (%.6g %.6g %.6g)", (double)change->worst_position[0],
 			(double)change->worst_position[1], (double)change->worst_position[2]);
 	put_pair("\n    vertices ", a->vertices_after, b->vertices_after, "", out);
 	put_pair(", mirror seams ", a->seam_count, b->seam_count, "", out);
