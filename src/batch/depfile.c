@@ -144,10 +144,7 @@ nt_status nt_depfile_write(const nt_depfile *depfile, const char *path, const ch
 		status = nt_output_add(output, path, NT_ROLE_MAIN, &sink, error);
 	if (!status && depfile->text.size)
 		status = nt_sink_write(sink, depfile->text.data, depfile->text.size, error);
-	if (!status)
-		return nt_output_commit(output, error);
-	nt_output_abort(output);
-	return status;
+	return nt_output_end(output, status, error);
 }
 
 void nt_depfile_free(nt_depfile *depfile)

@@ -195,10 +195,7 @@ static nt_status write_anew(const nt_record *record, nt_error *error)
 	status = nt_output_add(output, record->path, NT_ROLE_MAIN, &sink, error);
 	for (size_t i = 0; i < record->outputs.count && !status; i++)
 		status = nt_sink_write(sink, record->lines[i].text, record->lines[i].length + 1, error);
-	if (!status)
-		return nt_output_commit(output, error);
-	nt_output_abort(output);
-	return status;
+	return nt_output_end(output, status, error);
 }
 
 /* With the lock nobody appends in between; without one, the file stays as long as it is. A failure leaves it so, too,

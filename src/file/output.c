@@ -448,6 +448,14 @@ void nt_output_abort(nt_output *output)
 	free(output);
 }
 
+nt_status nt_output_end(nt_output *output, nt_status status, nt_error *error)
+{
+	if (!status)
+		return nt_output_commit(output, error);
+	nt_output_abort(output);
+	return status;
+}
+
 static void (*end_process)(void);
 
 static void remove_and_end(void)

@@ -142,6 +142,9 @@ uint64_t nt_output_copied(const nt_output *output);
  * either way. */
 nt_status nt_output_commit(nt_output *output, nt_error *error);
 
+/* The same if all of it was written; else aborts the set and returns what the writing did. */
+nt_status nt_output_end(nt_output *output, nt_status status, nt_error *error);
+
 /* Makes the name of a file or folder lasting: the folder that it is in onto the disk. Folders that cannot be
  * synchronised are passed over. */
 nt_status nt_output_sync_name(const char *path, nt_error *error);

@@ -42,10 +42,7 @@ static nt_status write_file(const nt_report_target *target, const char *path, co
 	if (!status)
 		status = text ? nt_sink_write(sink, text, strlen(text), error)
 			      : nt_report_write(what, target->format, to_sink, sink, error);
-	if (!status)
-		return nt_output_commit(output, error);
-	nt_output_abort(output);
-	return status;
+	return nt_output_end(output, status, error);
 }
 
 nt_status nt_report_to_file(nt_report *const *reports, size_t count, const nt_report_target *target, nt_error *error)

@@ -205,7 +205,7 @@ TEST(output_bytes_are_the_same_for_small_and_large_writes)
 	assert_int_equal(setrlimit(RLIMIT_FSIZE, &unlimited), 0);
 	signal(SIGXFSZ, SIG_DFL);
 	assert_string_equal(error.message, "cannot write: File too large");
-	nt_output_abort(output);
+	assert_int_equal(nt_output_end(output, NT_ERROR_IO, &error), NT_ERROR_IO);
 	assert_int_equal(count_in_folder(), 3);
 	nt_file_close(&file);
 	free(bytes);
