@@ -361,6 +361,13 @@ only $inputs mirrored_cube.mtl bumps.png plates.bin
 run quad.obj o.glb
 same piped.glb o.glb
 [ ! -s r ] || wrong "a record of a pipe"
+mkfifo pipe.obj
+cat quad.obj >pipe.obj &
+run -q --update --record=r pipe.obj piped.glb
+exits 0
+run -q --update --record=r --output-format=glb quad.obj /dev/null
+exits 0
+[ ! -s r ] || wrong "a record of a pipe or a device"
 
 # a sanitizer makes each of them ten times as slow
 case $BUILD in *sanitize*) many=250 ;; *) many=1000 ;; esac

@@ -32,23 +32,3 @@ TEST(equal_keys_have_one_number)
 	nt_key_set_free(&set);
 	assert_int_equal(set.count, 0);
 }
-
-TEST(equal_names_have_one_number)
-{
-	nt_name_table table = {0};
-	char texts[1000][8];
-	assert_int_equal(nt_name_find(&table, "a", 1), UINT32_MAX);
-	for (uint32_t i = 0; i < 1000; i++) {
-		snprintf(texts[i], sizeof texts[i], "%u", i);
-		assert_int_equal(nt_name_add(&table, texts[i], strlen(texts[i])), i);
-	}
-	for (uint32_t i = 0; i < 1000; i++) {
-		assert_int_equal(nt_name_add(&table, texts[i], strlen(texts[i])), i);
-		assert_int_equal(nt_name_find(&table, texts[i], strlen(texts[i])), i);
-	}
-	assert_int_equal(table.count, 1000);
-	assert_int_equal(nt_name_find(&table, "1000", 4), UINT32_MAX);
-	assert_int_equal(nt_name_find(&table, "12", 1), 1);
-	assert_int_equal(nt_name_add(&table, "", 0), 1000);
-	nt_name_table_free(&table);
-}

@@ -59,21 +59,6 @@ static void assert_named(const nt_output_options *options, const char *wanted, n
 	nt_output_abort(output);
 }
 
-TEST(equal_bytes_are_used)
-{
-	nt_error error;
-	nt_sink *main;
-	put_text_file("n.png", "somebody\n");
-	struct stat before, after;
-	stat(in_folder("n.png"), &before);
-	nt_output *output = start(NULL, &main);
-	assert_string_equal(nt_sink_name(sidecar(output, "n.png", NT_ROLE_IMAGE, "somebody\n"), false), "n.png");
-	assert_int_equal(nt_output_commit(output, &error), NT_OK);
-	stat(in_folder("n.png"), &after);
-	assert_int_equal(before.st_ino, after.st_ino);
-	assert_int_equal(count_in_folder(), 2);
-}
-
 TEST(another_file_stays_and_the_name_is_of_the_bytes)
 {
 	put_text_file("a.bin", "theirs");
@@ -182,35 +167,6 @@ TEST(a_file_of_ours_is_replaced_by_way_of_a_staging_name)
 		assert_string_equal(nt_sink_name(sink, false), "a.bin");
 		assert_memory_equal(nt_sink_name(sink, true), "a.new-", 6);
 		assert_string_equal(nt_sink_digest_before(sink), SOMEBODY);
-		nt_output_abort(output);
-	}
-}
-
-TEST(a_file_that_is_not_provably_ours_is_not_replaced)
-{
-	nt_sink *main;
-	const nt_output_options claimed = {.find_ownership = own_old};
-	/* no main file that could say so */
-	put_text_file("a.bin", "somebody\n");
-	nt_output *output = start(&claimed, &main);
-	sidecar(output, "a.bin", NT_ROLE_BUFFER, "new");
-	assert_false(nt_output_has_staging(output));
-	nt_output_abort(output);
-	/* one that says nothing; an image; a file that was changed; one that the input refers to; in place */
-	put_text_file("a.gltf", "old");
-	static char path[512];
-	snprintf(path, sizeof path, "%s", in_folder("a.gltf"));
-	const nt_output_options silent = {0}, in_place = {.find_ownership = own_old, .in_place = path};
-	const nt_output_options *const all[] = {&silent, &claimed, &claimed, &claimed, &in_place};
-	for (size_t i = 0; i < 5; i++) {
-		nt_error error;
-		put_text_file("a.bin", i == 2 ? "changed\n" : "somebody\n");
-		output = start(all[i], &main);
-		if (i == 3)
-			assert_int_equal(nt_output_protect(output, in_folder("a.bin"), NULL, &error), NT_OK);
-		nt_sink *sink = sidecar(output, "a.bin", i == 1 ? NT_ROLE_IMAGE : NT_ROLE_BUFFER, "new");
-		assert_false(nt_output_has_staging(output));
-		assert_string_not_equal(nt_sink_name(sink, false), "a.bin");
 		nt_output_abort(output);
 	}
 }
