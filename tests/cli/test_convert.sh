@@ -191,6 +191,18 @@ exits 0
 grep -aq '^format binary_big_endian 1.0' be.ply || wrong "not big endian"
 grep -aq '^property float bz' be.ply || wrong "no bitangents"
 
+scene "bitangents of tangents that are kept are as long as these, whatever the normals are"
+{
+	printf '%s\n' ply 'format ascii 1.0' 'element vertex 3'
+	printf 'property float %s\n' x y z nx ny nz s t tx ty tz tw
+	printf '%s\n' 'element face 1' 'property list uchar int vertex_indices' end_header
+	printf '%s 0 0 2 %s 1 0 0 1\n' '0 0 0' '0 0' '1 0 0' '1 0' '0 1 0' '0 1'
+	echo 3 0 1 2
+} >kept.ply
+run --bitangents kept.ply out.glb
+exits 0
+is "$(gltf out.glb 'rows(g.meshes[0].primitives[0].attributes._BITANGENT)')" '[[0,1,0],[0,1,0],[0,1,0]]'
+
 scene "faces of one and two corners stay in a binary PLY"
 python3 - <<'END'
 import struct
