@@ -54,8 +54,26 @@ SETS = [
 RULES = 'rules of flipped, nearly degenerate and mirrored triangles (309a1b1f, 325de67c, f63d0ada, 1c327b56)'
 # Changes that are meant: (kind, pattern of "set path detail", why). The first that fits is taken.
 LAYOUT = [('layout', '', 'the same values lie elsewhere, or in a view of another number')]
+# Since 956a97d6.
+GRID = 'what rounding to a grid may have turned, and below eight texels (86124ecd, c43bbe0d, 0cf081ed, 5bad646e)'
+LATER = LAYOUT + [
+    ('messages', r' UV_FLIPPED_TRIANGLE: -\d+ \+0$', GRID),
+    ('report', r' /findings (UV_(FLIPPED_TRIANGLE|MIXED_WINDING_ISLAND|MIRROR_(SEAM|OVERLAP|LONE))|TAN_MIRROR_SHARED_VERTEX): ', GRID),
+    ('report', r' /seams: | /files/N/meshes/N/(seam_(count|length)|edges/mirror|islands_by_kind/\w+|islands/N/(kind|covered_share|twin)): ',
+     GRID),
+    ('report', r" /files/N/(meshes/N/)?verdict: .*( flipped|is folded|; and \d+ more')", GRID),
+    ('report', r' /findings UV_(DEGENERATE_TRIANGLE|UNMAPPED): -(\d+) \+\2$', 'triangles that are flat in space, and words (b33fdc1c, 49e79bbc)'),
+    ('report', r'^report \S+\.gl\w+ /files/N/meshes/N/(texture_size|islands/N/texel_density)\S*: \S+ -> None$',
+     'a texture without an image has no picture (bb19a519)'),
+    ('messages', r'^weld .*\.(obj|ply) .*(nothing that --|--weld welds gl|--weld: only glTF made from glTF)', 'only glTF is welded (31a67ce6)'),
+    ('messages', r'^check .* checked, \d+ (primitives?|mesh|meshes), .*": -[01] \+[01]$', 'an OBJ has meshes (31a67ce6)'),
+    ('messages', r' "nmtan: .*\.gl\w+ -> out\.gl\w+: .*": -[01] \+[01]$',
+     'vertices and triangles of Draco blocks are counted (0f93bf04, ccf74f26)'),
+    ('messages', r' NOT_VERIFIED: -1 \+1$', 'words (d3024742)'),
+    ('report', r' /findings NOT_VERIFIED: -1 \+1$|verdict: .Look at this: the output could not be verified', 'words (d3024742)'),
+]
 # Since 682f52f6.
-NEWER = LAYOUT + [
+NEWER = LATER + [
     ('messages', r' UV_(FLIPPED_TRIANGLE|NEAR_DEGENERATE|DEGENERATE_TRIANGLE|MIRROR_SEAM): ', RULES),
     ('messages', r'^weld .* WELD_LEFT: -1 \+1$', 'that numbers of elements differ is told before an accessor is read (8e34904f)'),
     ('report', r' /findings (UV_(FLIPPED_TRIANGLE|NEAR_DEGENERATE|DEGENERATE_TRIANGLE|MIRROR_(SEAM|OVERLAP|LONE)|'
@@ -244,7 +262,7 @@ for word in sys.argv[1:]:
                        if name.lower().endswith(MESHES) and os.path.getsize(os.path.join(path, name)) <= largest)
         inputs += random.Random(45).sample(below, min(sample, len(below)))
 programs = [build(commit), os.path.abspath('build/release/nmtan')]
-rows = OLDER if commit.startswith(COMMIT) else NEWER if commit.startswith('682f52f6') else LAYOUT
+rows = next((rows for name, rows in ((COMMIT, OLDER), ('682f52f6', NEWER), ('956a97d6', LATER)) if commit.startswith(name)), LAYOUT)
 work = [(source, options) for source in sorted(inputs) for options in SETS if only in options[0]]
 began = time.monotonic()
 counts, examples, unexplained = collections.Counter(), collections.defaultdict(list), 0
