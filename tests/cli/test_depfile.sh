@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 # Depfiles: make and Ninja make again exactly what has to be.
+# Leaks count.
 . "$ROOT/tests/support/cli.sh"
 unset MAKEFLAGS MFLAGS MAKELEVEL # of the make that runs the tests: it may be silent
 

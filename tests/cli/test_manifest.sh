@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 # The manifest: one line for each input, valid, and true.
+# Leaks count.
 . "$ROOT/tests/support/cli.sh"
 
 # The value of a Python expression over m: the lines by input.
