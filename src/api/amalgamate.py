@@ -48,7 +48,8 @@ OWN = [re.compile(pattern, re.M) for pattern in (
 	r'^(?:static|LANE_INLINE) [^;={(]*?\b(\w+)\(',  # functions
 	r'^static [^;={(]*?\b(\w+)(?:\[[^=;]*)? = ',  # constants
 	r'^\} (\w+)(?: = .*)?;',  # structs, and variables of one
-	r'^typedef [^{};]*?\b(\w+)(?: __attribute__.*)?;',
+	r'^[A-Z][A-Z_]+\(([a-z]\w+), [^;\n]*\)$',  # functions that a macro makes
+	r'^typedef [^{};(]*?\b(\w+)(?: __attribute__.*)?[;(]',
 	r'^typedef (?:struct|enum|union) (\w+) \{')]
 ENUM = re.compile(r'^(?:typedef )?enum(?: \w+)? \{(.*?)\}', re.M | re.S)
 COMMENT = re.compile(r'/\*.*?\*/', re.S)
