@@ -576,8 +576,6 @@ char *obj_utf8_text(nt_arena *arena, const char *text, size_t length)
 {
 	if (is_utf8(text, length))
 		return nt_arena_text(arena, text, length);
-	if (length > SIZE_MAX / 2 - 1)
-		return NULL;
 	char *copy = nt_arena_alloc(arena, 2 * length + 1, 1);
 	if (!copy)
 		return NULL;

@@ -724,12 +724,14 @@ is "$(gltf out.gltf 'g.images')" "$(gltf quad.gltf 'g.images')"
 quad 'norm -s 2 4 1 -o 0.25 0.5 0 up.png'
 run quad.obj moved.gltf
 changed moved.gltf far.gltf 'g["materials"][0]["normalTexture"]["extensions"]["KHR_texture_transform"]["offset"] = [1e39, 0]'
-for file in quad.obj moved.gltf far.gltf; do
+changed moved.gltf turned.gltf 'g["materials"][0]["normalTexture"]["extensions"]["KHR_texture_transform"]["rotation"] = 1.5707963'
+for file in quad.obj moved.gltf far.gltf turned.gltf; do
 	run -q --check --fail-on=never --report=r.html $file
-	value r.html 'r["files"][0]["meshes"][0]["images"][0]["map"]' >>places
+	value r.html '[round(x, 4) + 0 for x in r["files"][0]["meshes"][0]["images"][0]["map"]]' >>places
 done
 is "$(uniq -c places | sed 's/^ *//')" "2 [2, 0, 0.25, 0, 4, -3.5]
-1 [1, 0, 0, 0, 1, 0]"
+1 [1, 0, 0, 0, 1, 0]
+1 [0.0, 4, 0.25, -2, 0.0, -3.5]"
 
 # colour.jpg: 16 x 16, four squares of one colour each, 4:4:4; sharp 0.35 (libjpeg-turbo through libvips) decodes them as
 # (128, 127, 254), (200, 60, 219), (90, 180, 230) and (128, 40, 210)

@@ -11,8 +11,8 @@ static void is_called(const nt_format_entry *entry, const char *name)
 TEST(format_of_a_name_is_its_extension_in_any_case)
 {
 	static const char *const rows[][2] = {{"a.obj", "obj"}, {"dir.gltf/a.PLY", "ply"}, {"a.obj.gltf", "gltf"},
-		{".glb", "glb"}, {"a.drc", "drc"}, {"dir.gltf/a", ""}, {"a.gltf2", ""}, {"a.", ""}, {"-", ""},
-		{"", ""}};
+		{".glb", "glb"}, {"dir.gltf/.obj", "obj"}, {"a.drc", "drc"}, {"dir.gltf/a", ""}, {"a.gltf2", ""},
+		{"a.", ""}, {"-", ""}, {"", ""}};
 	for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
 		is_called(nt_format_of_path(rows[i][0]), rows[i][1]);
 }
