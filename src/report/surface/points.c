@@ -35,7 +35,7 @@ int nt_compare_normals(const float *a, const float *b)
 {
 	const nt_dvec3 x = nt_dvec3_load(a), y = nt_dvec3_load(b);
 	const double dot = nt_dvec3_dot(x, y), both = nt_dvec3_dot(x, x) * nt_dvec3_dot(y, y);
-	return !(dot * dot >= 0.25 * both && both > 0.0) ? 0 : dot > 0.0 ? 1 : -1;
+	return dot * dot >= 0.25 * both ? (dot > 0.0) - (dot < 0.0) : 0;
 }
 
 static int compare_normals(const nt_mesh *mesh, uint32_t a, uint32_t b)
