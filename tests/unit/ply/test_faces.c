@@ -1,29 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Faces of PLY files: the runs of equal faces that are read at once, and vertices of many texture coordinates.
+ * Faces of PLY files: the runs of equal faces that are read at once.
  */
 #include "ply_file.h"
-
-/* 2000 faces around vertex 0, each with other coordinates there: more than the first hash table. */
-TEST(wedges_of_one_vertex_may_be_many)
-{
-	enum { FACES = 2000 };
-	char *text = malloc(200000), *p = text;
-	p += sprintf(p, HEAD("3") "element face %d\nproperty list uchar int vertex_indices\n"
-		"property list uchar float texcoord\nend_header\n" POINTS, FACES);
-	for (int i = 0; i < FACES; i++)
-		p += sprintf(p, "3 0 1 2 6 %d 0 1 0 0 1\n", i / 2);
-	reading r;
-	open_text(&r, text);
-	assert_int_equal(r.mesh->vertex_count, 3 + FACES / 2 - 1);
-	for (uint32_t i = 0; i < FACES; i++) {
-		const uint32_t v = r.mesh->indices[3 * i];
-		assert_int_equal(v, i < 2 ? 0 : 2 + i / 2);
-		assert_true(r.mesh->texcoords[2 * v] == (float)(i / 2));
-	}
-	close_reading(&r);
-	free(text);
-}
 
 /* 300 faces over 9 vertices, triangles and quads by turns of 50, with CR before LF in text; the index of
  * one corner can be replaced. Returns where that index stands: line or offset. */
