@@ -154,8 +154,8 @@ static inline bool nt_is_parallel(const float *t, const float *n)
 /* Whether T is a unit vector across N. */
 static inline bool nt_is_frame(const float *t, const float *n)
 {
-	return fabsf(nt_squared(t) - 1.0f) <= NT_UNIT_TOLERANCE &&
-	       (nt_is_surely_frame(t, n) || (!nt_is_normal_length(nt_squared(n)) && !nt_is_parallel(t, n)));
+	return nt_is_surely_frame(t, n) || (!nt_is_normal_length(nt_squared(n)) && !nt_is_parallel(t, n) &&
+						   fabsf(nt_squared(t) - 1.0f) <= NT_UNIT_TOLERANCE);
 }
 
 /*

@@ -95,7 +95,8 @@ static inline NT_ALWAYS_INLINE bool has_unusable(const nt_solve *solve, size_t f
 	for (size_t k = 0; k < size; k++)
 		bad |= (unsigned)(t[4 * k + 3] != w) << k;
 	for (size_t k = 0; open && bad != all && k < size; k++)
-		bad |= (unsigned)!nt_is_frame(t + 4 * k, nt_normal(mesh, nt_vertex_of(mesh, first + k))) << k;
+		bad |= (unsigned)!(fabsf(nt_squared(t + 4 * k) - 1.0f) <= NT_UNIT_TOLERANCE &&
+			nt_is_frame(t + 4 * k, nt_normal(mesh, nt_vertex_of(mesh, first + k)))) << k;
 	if (NT_EXPECT(!bad, 1))
 		return false;
 	for (size_t k = 0; k < size; k++)

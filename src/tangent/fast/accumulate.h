@@ -287,9 +287,7 @@ typedef size_t usual_adder(const nt_fast *fast, unsigned range, const uint8_t *f
 ADD_USUAL(add_here, false, false, false)
 ADD_USUAL(add_flagged, false, true, false)
 ADD_USUAL(add_narrow, true, false, false)
-#ifndef __wasm__
 #ifndef NT_SMALL_CODE
-#define ALIKE_IS_WORTH_CODE
 ADD_USUAL(add_alike_here, false, false, true)
 ADD_USUAL(add_alike_narrow, true, false, true)
 
@@ -307,7 +305,6 @@ static bool are_one_sided(const uint8_t *flags, size_t i, size_t end)
 	return !(others & ones * NT_TRIANGLE_ORIENT);
 }
 #endif
-#endif
 
 /* Triangles that are not degenerate, lanes [begin, end). */
 static void add_ordinary(nt_fast *fast, unsigned range, const uint8_t *flags, size_t begin, size_t end,
@@ -318,8 +315,9 @@ static void add_ordinary(nt_fast *fast, unsigned range, const uint8_t *flags, si
 	size_t i = begin;
 	if (begin == end)
 		return;
-#ifdef ALIKE_IS_WORTH_CODE
-	if (are_one_sided(flags, begin, end))
+#ifndef NT_SMALL_CODE
+	/* not where each byte is sent to a browser */
+	if (NT_NARROW_LIMIT > 0 && are_one_sided(flags, begin, end))
 		here = is_narrow ? add_alike_narrow : add_alike_here;
 #endif
 	if (!is_narrow && !fast->wants_more) {

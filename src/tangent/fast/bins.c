@@ -178,7 +178,7 @@ void nt_bin_add_up(const nt_bins *bins, size_t index, nt_bin *bin)
 	for (int o = 0; o < 2; o++) {
 		to[o] = bin->sums[o] ? bin->sums[o] : bin->sums[!o];
 		for (size_t v = 0; v < (a->vertex_count + NT_FAN_LANES - 1) / NT_FAN_LANES * NT_FAN_LANES; v++)
-			to[o][v] = (nt_record){0, 0, 0, NT_STATE_BASE | NT_STATE_ALL};
+			memcpy(&to[o][v], &nt_no_record, sizeof nt_no_record);
 	}
 	for (unsigned range = 0; range < bins->ranges; range++)
 		add_corners(bins, begins[range], bins->cursors[range * bins->count + index], to,

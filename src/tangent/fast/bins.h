@@ -41,6 +41,9 @@ enum {
 	NT_STATE_BASE = 0x40000000
 };
 
+/* No corner yet. Copied as a whole, as it is loaded: stores of single words would have to reach the cache first. */
+static const nt_record nt_no_record = {0, 0, 0, NT_STATE_BASE | NT_STATE_ALL};
+
 /* nt_record.state when settled: the sign as a float, or one of these. */
 #define NT_RESULT_PLUS 0x3f800000u    /* 1.0f */
 #define NT_RESULT_MINUS 0xbf800000u   /* -1.0f */

@@ -47,7 +47,7 @@ static void clear_part(const job *j, array *a, unsigned range)
 {
 	const size_t begin = part_begin(j, range), end = part_begin(j, range + 1);
 	for (size_t v = begin; v < end; v++)
-		a->records[v] = (nt_record){0, 0, 0, NT_STATE_BASE | NT_STATE_ALL};
+		memcpy(&a->records[v], &nt_no_record, sizeof nt_no_record);
 	if (a->more)
 		memset(a->more + begin, 0, (end - begin) * sizeof *a->more);
 	(void)nt_atomic_add(&a->cleared, 1, RELEASE);

@@ -113,9 +113,10 @@ static bool clear_records(nt_fast *fast, int orient, unsigned range, void *conte
 {
 	(void)range;
 	small_room *room = context;
-	nt_record *records = room->records[orient];
-	for (size_t v = 0; v < (fast->vertex_count + NT_LANES - 1) / NT_LANES * NT_LANES; v++)
-		records[v] = (nt_record){0, 0, 0, NT_STATE_BASE | NT_STATE_ALL};
+	nt_record *const records = room->records[orient];
+	const size_t count = (fast->vertex_count + NT_LANES - 1) / NT_LANES * NT_LANES;
+	for (size_t v = 0; v < count; v++)
+		memcpy(&records[v], &nt_no_record, sizeof nt_no_record);
 	fast->records[orient] = records;
 	return true;
 }
