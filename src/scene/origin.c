@@ -139,7 +139,7 @@ const char *nt_origin_text(const double origin[3], char text[NT_ORIGIN_TEXT])
 	return text;
 }
 
-/* "by up to 0.25, which is 1.1 of the median edge 0.22" */
+/* "by up to 0.25, 1.1 times the median edge of 0.22" */
 static void report(nt_scene *scene, nt_code code, const rounding *r, double edge, const nt_exact *exact, bool stays)
 {
 	char text[NT_ORIGIN_TEXT], detail[320];
@@ -148,7 +148,7 @@ static void report(nt_scene *scene, nt_code code, const rounding *r, double edge
 		length = snprintf(detail, sizeof detail, "%s", nt_origin_text(scene->origin, text));
 	if (r->count)
 		snprintf(detail + length, sizeof detail - (size_t)length,
-			"%sby up to %.3g, which is %.2g of the median edge %.3g%s",
+			"%sby up to %.3g, %.2g times the median edge of %.3g%s",
 			length ? "; float would round positions " : "", r->largest, r->largest / edge, edge,
 			length || !exact->stored ? ""
 			: exact->needless ? "; the PLY keeps its numbers, its normals and its tangents"

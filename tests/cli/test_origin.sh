@@ -178,7 +178,7 @@ scene "an OBJ far from 0 gets an origin, a node adds it, and its normals and tan
 far make
 run far.obj far.gltf
 exits 0
-says "far.obj: info: positions are computed relative to an origin: 431234.3,5412345.9,101; float would round positions by up to 0.25, which is 12 of the median edge 0.0203 [POS_ORIGIN]"
+says "far.obj: info: positions are computed relative to an origin: 431234.3,5412345.9,101; float would round positions by up to 0.25, 12 times the median edge of 0.0203 [POS_ORIGIN]"
 is "$(gltf far.gltf 'g.nodes.map(n => n.translation)')" "[[431234.3,5412345.9,101],[431234.3,5412345.9,101]]"
 is "$(far stands far.gltf)" True
 run near.obj near.gltf
@@ -205,7 +205,7 @@ scene "--origin=keep rounds positions, which a finding says, and blames no trian
 far make
 run --origin=keep far.obj keep.gltf
 exits 0
-says "warning: 462 vertices are moved by more than a hundredth of an edge where positions become float: by up to 0.25, which is 12 of the median edge 0.0203 [POS_ROUNDED]: nmtan --origin=auto far.obj keep.gltf"
+says "warning: 462 vertices are moved by more than a hundredth of an edge where positions become float: by up to 0.25, 12 times the median edge of 0.0203 [POS_ROUNDED]: nmtan --origin=auto far.obj keep.gltf"
 is "$(gltf keep.gltf 'g.nodes.map(n => n.translation)')" "[null,null]"
 # a file of numbers that are floats has these bytes, and needs nothing
 run -v rounded.obj rounded.gltf
@@ -281,7 +281,7 @@ scene "of a PLY to a PLY, --origin=keep says that only what is computed is made 
 far make
 kept='; the PLY keeps its numbers: only what is computed is made of the floats'
 run --origin=keep far_ascii.ply keep.ply
-says "which is 12 of the median edge 0.0203$kept [POS_ROUNDED]: nmtan --origin=auto far_ascii.ply keep.ply"
+says "12 times the median edge of 0.0203$kept [POS_ROUNDED]: nmtan --origin=auto far_ascii.ply keep.ply"
 run -q far_ascii.ply auto.ply
 for file in keep auto; do sed '1,/^end_header/d' $file.ply | sed 441q | cut -d' ' -f1-3 >$file.txt; done
 same keep.txt auto.txt
@@ -301,7 +301,7 @@ prints "; the PLY keeps its numbers, its normals and its tangents"
 run --origin=keep --existing=replace keep.ply again.ply
 says "$kept [POS_ROUNDED]: nmtan --existing=replace --origin=auto keep.ply again.ply"
 run --origin=keep keep.ply out.glb
-says "which is 12 of the median edge 0.0203 [POS_ROUNDED]: nmtan --origin=auto keep.ply out.glb"
+says "12 times the median edge of 0.0203 [POS_ROUNDED]: nmtan --origin=auto keep.ply out.glb"
 
 scene "a PLY of integers that float does not hold"
 printf '%s\n' ply 'format ascii 1.0' 'element vertex 4' 'property int x' 'property int y' 'property int z' \
