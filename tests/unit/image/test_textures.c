@@ -111,16 +111,22 @@ TEST(large_results_are_in_a_file)
 
 TEST(file_that_is_not_what_it_was_is_an_error)
 {
-	for (int how = 0; how < 3; how++) {
+	for (int how = 0; how < 4; how++) {
 		put_tga("n.tga", 255, 128, 128);
+		put_text_file("n.png", "\211PNG\r\n\032\n and more");
 		put_tga("other.tga", 255, 128, 128);
 		nt_textures *t = nt_textures_create(NULL);
 		nt_error error;
-		request(t, "n.tga", NT_TEXTURE_COLOR, 0);
+		/* of a PNG only whether it is grey is looked at */
+		if (how == 3)
+			request(t, "n.png", NT_TEXTURE_NORMALS_OR_HEIGHTS, 0);
+		else
+			request(t, "n.tga", NT_TEXTURE_COLOR, 0);
 		char other[300];
 		snprintf(other, sizeof other, "%s", in_folder("other.tga"));
 		const int done = how == 0 ? truncate(in_folder("n.tga"), 40)
-			: how == 1 ? rename(other, in_folder("n.tga")) : unlink(in_folder("n.tga"));
+			: how == 1 ? rename(other, in_folder("n.tga"))
+			: how == 2 ? unlink(in_folder("n.tga")) : truncate(in_folder("n.png"), 10);
 		assert_int_equal(done, 0);
 		assert_int_equal(make(t, false, &error), how == 2 ? NT_ERROR_MISSING : NT_ERROR_IO);
 		assert_true(how == 2 || strstr(error.message, "changed"));
