@@ -96,7 +96,11 @@ TEST(faults_are_refused_with_their_place)
 	check_refused("[\"\\ud800\"]", 10, 2);
 	check_refused("[\"\\udc00\\ud800\"]", 16, 2);
 	check_refused("[\"\\ud800\\ud800\"]", 16, 2);
-	check_refused("[\"\\u12g4\"]", 10, 3);
+	/* beside the digits and letters on both sides */
+	for (const char *none = "/:@G`g"; *none; none++) {
+		const char text[] = {'[', '"', '\\', 'u', '1', '2', *none, '4', '"', ']', '\0'};
+		check_refused(text, 10, 3);
+	}
 	check_refused("[\"\\x\"]", 6, 3);
 	check_refused("[\"\\", 3, 3);
 	check_refused("[\"\\u00", 6, 3);
