@@ -40,7 +40,7 @@ build/wasm/%.o: WASM_LEVEL := -Oz
 wasm_fast := src/base/% src/topology/% src/api/% src/tangent/fast/% src/tangent/usable.c src/tangent/repair.c src/tangent/frames.c
 $(patsubst %.c,build/wasm/%.o,$(filter $(wasm_fast),$(wasm_src))): WASM_LEVEL := -O2
 # Few meshes need these, and the last ones run once a call: 4 KB less, compressed.
-$(addprefix build/wasm/src/,topology/edge_tail.o topology/edge_sort.o api/self_test.o api/split.o api/tangents.o): WASM_LEVEL := -Oz
+$(addprefix build/wasm/src/,tangent/fast/fast.o topology/edge_tail.o topology/edge_sort.o api/self_test.o api/split.o api/tangents.o): WASM_LEVEL := -Oz
 build/wasm/%.o: %.c | need-wasm
 	@mkdir -p $(@D)
 	$(WASM_CC) $(WASM_FLAGS) $(WASM_LEVEL) -c -o $@ $<

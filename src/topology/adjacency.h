@@ -48,7 +48,8 @@ static inline uint32_t nt_fan_narrow(nt_fan_entry entry)
 /* A cursor: where the vertex's next entry of this range goes (each corner moves it by `step`), and
  * flags above. */
 #define NT_CURSOR_HUB ((uint32_t)1 << 31)       /* a hub: in the place's stead is how many corners it has in all */
-#define NT_CURSOR_SHARED ((uint32_t)1 << 30)    /* an earlier range has corners of this vertex too */
+#define NT_CURSOR_SHARED ((uint32_t)1 << 30)    /* an earlier range has corners of this vertex too; in two sweeps, any
+                                                   other one */
 #define NT_CURSOR_PLACE (((uint32_t)1 << 28) - 1)
 
 /* Cursors from here on have a flag. */
@@ -121,8 +122,8 @@ static inline const nt_fan_entry *nt_adjacency_block(const nt_adjacency *a, size
 }
 
 /*
- * Counts the corners of each vertex, if there are many or several ranges, and makes the places. Entries are not
- * written.
+ * Counts the corners of each vertex, if there are many or several ranges, and makes the places, range by range. Entries
+ * are not written.
  *
  *   most_places             up to NT_ADJACENCY_PLACES
  *   most_narrow             vertices that have narrow entries: up to NT_NARROW_LIMIT

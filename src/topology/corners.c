@@ -93,7 +93,7 @@ nmtan_status nt_cut_ranges(const uint8_t *flags, size_t triangle_count, unsigned
 		while (bounds[r] < triangle_count && flags[bounds[r]] & NT_SECOND_HALF)
 			bounds[r]++;
 	}
-	*ranges = (nt_triangle_ranges){count, bounds};
+	*ranges = (nt_triangle_ranges){.count = count, .bounds = bounds};
 	return NMTAN_OK;
 }
 

@@ -33,11 +33,25 @@ typedef struct nt_triangles {
 	const uint32_t *cuts; /* [triangles]; NULL: every face is a triangle */
 } nt_triangles;
 
-/* First triangle of each range: range r holds [bounds[r], bounds[r + 1]). */
+/* First triangle of each range: range r holds [bounds[r], bounds[r + 1]). If there are two sweeps, it has as many
+ * bounds again, and holds [bounds[count + r], bounds[count + r + 1]) too. */
 typedef struct nt_triangle_ranges {
 	unsigned count;
-	const size_t *bounds; /* [count + 1] */
+	const size_t *bounds; /* [sweeps * count + 1] */
+	bool two_sweeps;
 } nt_triangle_ranges;
+
+/* Without threads there is one range. */
+#ifdef NT_NO_THREADS
+enum { NT_MOST_SWEEPS = 1 };
+#else
+enum { NT_MOST_SWEEPS = 2 };
+#endif
+
+static inline unsigned nt_sweeps(const nt_triangle_ranges *ranges)
+{
+	return NT_MOST_SWEEPS > 1 && ranges->two_sweeps ? 2 : 1;
+}
 
 /* The cut of a triangle with these corners of the face that begins at corner `first`. */
 static inline uint32_t nt_cut_of(uint32_t first, const uint32_t corners[3])

@@ -77,7 +77,7 @@ nmtan_status nt_edge_tail_make(const nt_welded_mesh *m, const nt_triangle_ranges
 static void note_all(const nt_welded_mesh *m, const size_t bounds[2], nt_edge_tail *tail)
 {
 	nt_edge_note *note = tail->notes;
-	tail->ranges = (nt_triangle_ranges){1, bounds};
+	tail->ranges = (nt_triangle_ranges){.count = 1, .bounds = bounds};
 	for (size_t first = 0; first < m->triangle_count; first += NT_EDGE_NOTE_MOST) {
 		const size_t left = m->triangle_count - first;
 		*note = (nt_edge_note){(uint32_t)first, 0};

@@ -128,7 +128,7 @@ static void NT_NOINLINE add_unusual(nt_fast *fast, unsigned range, uint32_t vert
 {
 	if (!(cursor & NT_CURSOR_HUB))
 		nt_adjacency_store(&fast->adjacency, cursor, entry);
-	if (cursor & NT_CURSOR_SHARED) {
+	if (fast->deferred && cursor & NT_CURSOR_SHARED) {
 		nt_deferred *d = &fast->deferred[range];
 		const size_t i = d->count++;
 		d->to[i] = vertex | (uint32_t)orient << 31;
@@ -200,7 +200,7 @@ static void add_triangle(nt_fast *fast, unsigned range, unsigned orient, const u
 static inline NT_ALWAYS_INLINE void add_or_defer(nt_record *records, uint32_t vertex, uint32_t cursor, uint32_t bit,
 	const float *add, nt_deferred *deferred)
 {
-	if (!(cursor & NT_CURSOR_SHARED)) {
+	if (!deferred->to || !(cursor & NT_CURSOR_SHARED)) {
 		add_record(records + vertex, add);
 		return;
 	}
@@ -230,7 +230,7 @@ static inline NT_ALWAYS_INLINE size_t add_usual(const nt_fast *fast, unsigned ra
 		const uint32_t a = ids[0], b = ids[1], c = ids[2];
 		const uint32_t pa = cursors[a], pb = cursors[b], pc = cursors[c];
 		if (is_narrow ? pa >= full || pb >= full || pc >= full
-			: !are_flagged && NT_EXPECT((pa | pb | pc) >= NT_CURSOR_FLAGGED, 0))
+			: are_flagged == ((pa | pb | pc) < NT_CURSOR_FLAGGED))
 			break;
 		cursors[a] = pa + (are_flagged && pa & NT_CURSOR_HUB ? 0 : step);
 		cursors[b] = pb + (are_flagged && pb & NT_CURSOR_HUB ? 0 : step);
@@ -321,10 +321,11 @@ static void add_ordinary(nt_fast *fast, unsigned range, const uint8_t *flags, si
 		here = is_narrow ? add_alike_narrow : add_alike_here;
 #endif
 	if (!is_narrow && !fast->wants_more) {
-		if (range == 0) /* without flags, but for hubs */
+		while (i < end) {
 			i = here(fast, range, flags, i, end, ids, out);
-		if (i < end)
-			(void)add_flagged(fast, range, flags, i, end, ids, out);
+			if (i < end)
+				i = add_flagged(fast, range, flags, i, end, ids, out);
+		}
 		return;
 	}
 	for (; i < end; i++) {
@@ -467,7 +468,8 @@ static void kernel_accumulate(nt_fast *fast, size_t begin, size_t end, unsigned 
 	lanes_out out;
 	const float offset = nt_stored_v_offset(fast->solve->mesh);
 	const bool scattered = fast->scattered;
-	nt_edge_note *note = fast->tail->notes ? nt_edge_notes(fast->tail, range) : NULL;
+	const unsigned part = fast->sweep * fast->ranges.count + range;
+	nt_edge_note *note = fast->tail->notes ? nt_edge_notes(fast->tail, part) : NULL;
 	static_assert((int)NT_EDGE_NOTE_MOST == NT_TRIANGLES && (int)NT_EDGE_NOTE_LEAST == NT_TRIANGLES - 1, "a batch");
 	for (size_t first = begin, count; first < end; first += count) {
 		count = end - first < NT_TRIANGLES ? end - first : NT_TRIANGLES;

@@ -37,7 +37,7 @@ typedef struct nt_deferred {
 	NT_ALIGNED(64) uint32_t *to; /* vertices, with NT_ENTRY_ORIENT; one more than can be counted may be written */
 	nt_record *add;
 	nt_record_more *more; /* or NULL */
-	size_t count;
+	size_t count, swept; /* in all; in the first of two sweeps */
 } nt_deferred;
 
 typedef struct nt_fast {
@@ -60,7 +60,8 @@ typedef struct nt_fast {
 	nt_edge_tail *tail;      /* what step 4 notes of the last triangles */
 	nt_unsorted unsorted;    /* edges that are not paired as a vertex's corners alone would have it */
 	nt_triangle_ranges ranges;
-	nt_deferred *deferred;       /* [ranges]; NULL: there is one */
+	unsigned sweep;              /* of step 4 */
+	nt_deferred *deferred;       /* [ranges]; NULL: nothing has to wait */
 	void *small;                 /* of small.c */
 	const nt_row_box *box;       /* of all rows; NULL: not known */
 	uint64_t work;           /* of large groups that may split, so far: complex_solve.c */

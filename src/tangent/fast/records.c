@@ -8,7 +8,9 @@
  * cache of who adds to them. All that ask help to clear the others.
  *
  * A vertex belongs to the first range that touches it. Later ranges put their contributions aside, and these are
- * added in the end in the order of ranges: every sum is in triangle order, whatever the number of threads.
+ * added in the end in the order of ranges: every sum is in triangle order, whatever the number of threads. In two
+ * sweeps a vertex of several ranges belongs to none of them, and all contributions are put aside but those of the first
+ * range in the first sweep.
  */
 #include "tangent/fast/parts.h"
 
@@ -106,7 +108,14 @@ static void add_ranges(void *context, size_t begin, size_t end, unsigned thread)
 	const size_t *bounds = j->fast->ranges.bounds;
 	for (size_t range = begin; range < end; range++) {
 		nt_fast view = *j->fast;
-		j->kernels->accumulate(&view, bounds[range], bounds[range + 1], (unsigned)range, get_array, j);
+		for (; view.sweep < nt_sweeps(&view.ranges); view.sweep++) {
+			const size_t at = view.sweep * view.ranges.count + range;
+			/* nobody comes before the first range of the first sweep */
+			view.deferred = at == 0 ? NULL : j->fast->deferred;
+			j->kernels->accumulate(&view, bounds[at], bounds[at + 1], (unsigned)range, get_array, j);
+			if (j->fast->deferred && view.sweep == 0)
+				j->fast->deferred[range].swept = j->fast->deferred[range].count;
+		}
 	}
 }
 
@@ -134,9 +143,11 @@ static void add_deferred(void *context, size_t begin, size_t end, unsigned threa
 {
 	(void)thread;
 	const nt_fast *fast = context;
-	for (size_t r = 1; r < fast->ranges.count; r++) {
-		const nt_deferred *d = &fast->deferred[r];
-		for (size_t i = 0; i < d->count; i++) {
+	const unsigned ranges = fast->ranges.count;
+	for (size_t r = 0; ranges > 1 && r < nt_sweeps(&fast->ranges) * ranges; r++) {
+		const nt_deferred *d = &fast->deferred[r % ranges];
+		const size_t last = r < ranges ? d->swept : d->count;
+		for (size_t i = r < ranges ? 0 : d->swept; i < last; i++) {
 			const int orient = (d->to[i] & NT_ENTRY_ORIENT) != 0;
 			const uint32_t vertex = d->to[i] & NT_ENTRY_VERTEX;
 			if (vertex - begin >= end - begin)

@@ -149,7 +149,7 @@ nmtan_status nt_fast_weld_small(nt_fast *fast, bool *welded)
 	fast->flags = (uint8_t *)memset(room->flags, 0, fast->triangle_count);
 	room->bounds[0] = 0;
 	room->bounds[1] = fast->triangle_count;
-	fast->ranges = (nt_triangle_ranges){1, room->bounds};
+	fast->ranges = (nt_triangle_ranges){.count = 1, .bounds = room->bounds};
 	fast->adjacency = (nt_adjacency){.vertex_count = fast->vertex_count, .ranges = 1, .cursors = room->cursors,
 		.narrow = room->narrow, .step = (uint32_t)step};
 	fast->record_step = 1;

@@ -256,8 +256,10 @@ static void write_ranges(void *context, size_t begin, size_t end, unsigned threa
 	void (*write)(nt_fast *, size_t, size_t) = fast->sparse && !w->has_open ? write_suspects
 		: fast->wants_more || fast->sparse || fast->triangles.cuts || fast->scattered ? write_triangles
 		: write_plain;
+	const unsigned ranges = fast->ranges.count;
 	for (size_t range = begin; range < end; range++)
-		write(fast, fast->ranges.bounds[range], fast->ranges.bounds[range + 1]);
+		for (size_t at = range; at < nt_sweeps(&fast->ranges) * ranges; at += ranges)
+			write(fast, fast->ranges.bounds[at], fast->ranges.bounds[at + 1]);
 }
 
 void nt_fast_write(nt_fast *fast, const nt_settled *settled)

@@ -72,7 +72,7 @@ TEST(borrowed_memory_of_any_size_gives_the_same_places)
 		nt_scratch_init(&scratch, NULL);
 		nt_borrowed memory = nt_borrow(borrowed, bytes, &scratch), none = nt_borrow(borrowed, 0, &scratch);
 		const nt_triangles triangles = {.ids = ids};
-		const nt_triangle_ranges cut = {i % 2 ? 3 : 1, bounds[i % 2]};
+		const nt_triangle_ranges cut = {.count = i % 2 ? 3 : 1, .bounds = bounds[i % 2]};
 		nt_adjacency a;
 		assert_int_equal(nt_adjacency_make(&triangles, &cut, VERTICES, NT_ADJACENCY_PLACES, 0, &none,
 			&memory, &a), NMTAN_OK);
@@ -95,7 +95,7 @@ TEST(places_that_do_not_suffice_leave_hubs)
 		nt_scratch_init(&scratch, NULL);
 		nt_borrowed memory = nt_borrow(NULL, 0, &scratch);
 		const nt_triangles triangles = {.ids = ids};
-		const nt_triangle_ranges cut = {3, bounds};
+		const nt_triangle_ranges cut = {.count = 3, .bounds = bounds};
 		nt_adjacency a;
 		assert_int_equal(nt_adjacency_make(&triangles, &cut, VERTICES, most, 0, &memory, &memory, &a),
 			NMTAN_OK);
@@ -120,10 +120,10 @@ TEST(few_vertices_need_not_be_counted)
 	const size_t bounds[3] = {0, 100, TRIANGLES};
 	const nt_triangles triangles = {.ids = ids};
 	nt_adjacency a;
-	assert_int_equal(nt_adjacency_make(&triangles, &(nt_triangle_ranges){2, bounds}, VERTICES, NT_ADJACENCY_PLACES,
-		NT_NARROW_LIMIT, &memory, &memory, &a), NMTAN_OK);
+	const nt_triangle_ranges two = {.count = 2, .bounds = bounds}, whole = {.count = 1, .bounds = bounds + 1};
+	assert_int_equal(nt_adjacency_make(&triangles, &two, VERTICES, NT_ADJACENCY_PLACES, NT_NARROW_LIMIT, &memory,
+		&memory, &a), NMTAN_OK);
 	assert_null(a.narrow); /* two ranges */
-	const nt_triangle_ranges whole = {1, bounds + 1};
 	assert_int_equal(nt_adjacency_make(&triangles, &whole, VERTICES, NT_ADJACENCY_PLACES, VERTICES - 1, &memory,
 		&memory, &a), NMTAN_OK);
 	assert_null(a.narrow); /* a vertex too many */

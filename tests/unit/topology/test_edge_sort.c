@@ -40,7 +40,7 @@ static nmtan_status surround(const nt_triangles *all, const float (*rows)[3], si
 	size_t most_narrow, nt_scratch *scratch, nt_adjacency *result)
 {
 	const size_t bounds[2] = {0, triangles};
-	const nt_triangle_ranges ranges = {1, bounds};
+	const nt_triangle_ranges ranges = {.count = 1, .bounds = bounds};
 	nt_borrowed none = nt_borrow(NULL, 0, scratch);
 	nt_adjacency a;
 	const nmtan_status status = nt_adjacency_make(
@@ -482,7 +482,7 @@ static nmtan_status ask_noted(
 		.positions = positions[0], .step = 3, .scratch = scratch};
 	const size_t middle = triangles / 3 - (triangles / 3 > 0 && nt_is_cut_between(all, triangles / 3 - 1));
 	const size_t bounds[3] = {0, middle, triangles};
-	const nt_triangle_ranges ranges = {2, bounds};
+	const nt_triangle_ranges ranges = {.count = 2, .bounds = bounds};
 	nt_borrowed none = nt_borrow(NULL, 0, scratch);
 	nt_edge_tail tail;
 	assert_int_equal(nt_edge_tail_make(&mesh, &ranges, &none, &tail), NMTAN_OK);

@@ -153,21 +153,36 @@ static void join(joined *j, const nt_nasty *part, float unit)
 	j->mesh.face_count += m.face_count;
 }
 
-TEST(nasty_meshes_joined_are_byte_identical)
+/* All even triangles, then all odd ones, as if they were halves of quads: several threads do each half in a sweep. */
+static void put_odd_last(joined *j)
+{
+	uint32_t *indices = malloc(j->corner_count * sizeof *indices), *to = indices;
+	assert_non_null(indices);
+	for (size_t odd = 0; odd < 2; odd++)
+		for (size_t t = odd; t < j->mesh.face_count; t += 2, to += 3)
+			memcpy(to, j->indices + 3 * t, 3 * sizeof *to);
+	free(j->indices);
+	j->indices = indices;
+}
+
+static void check_joined(bool triangles)
 {
 	static const unsigned threads[] = {1, 2, 4};
 	joined j = {.mesh = {.struct_bytes = sizeof j.mesh}};
 	for (uint64_t seed = 0; seed < 400; seed++) {
 		nt_nasty part;
 		nt_nasty_make(seed, &part);
-		join(&j, &part, ldexpf(1, (int)(seed % 2 * (seed % 32))));
+		if (!triangles || part.corner_count == 3 * part.mesh.face_count)
+			join(&j, &part, ldexpf(1, (int)(seed % 2 * (seed % 32))));
 		nt_nasty_free(&part);
 	}
+	if (triangles)
+		put_odd_last(&j);
 	j.mesh.positions = j.rows[0];
 	j.mesh.normals = j.rows[1];
 	j.mesh.texcoords = j.rows[2];
 	j.mesh.indices = j.indices;
-	j.mesh.face_sizes = j.sizes;
+	j.mesh.face_sizes = triangles ? NULL : j.sizes;
 	const nmtan_mesh mesh = nt_filled(&j.mesh);
 	nt_result expected = nt_result_define(&mesh, j.corner_count, true);
 	size_t differences = 0;
@@ -181,6 +196,16 @@ TEST(nasty_meshes_joined_are_byte_identical)
 		free(j.rows[i]);
 	free(j.indices);
 	free(j.sizes);
+}
+
+TEST(nasty_meshes_joined_are_byte_identical)
+{
+	check_joined(false);
+}
+
+TEST(nasty_triangles_of_which_the_odd_ones_come_last_are_byte_identical)
+{
+	check_joined(true);
 }
 
 /* A grid large enough for the plan to choose bins by itself; vertices and faces are numbered by a stride that is
