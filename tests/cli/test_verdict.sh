@@ -621,9 +621,10 @@ printf 'Kaydara FBX Binary  \0' >a.bin
 printf 'solid x\nendsolid\n' >b.stl
 printf '<?xml version="1.0"?><COLLADA/>' >c.dae
 printf '#usda 1.0\n' >d.usda
+echo >g.usdc
 printf 'b3dm\1\0\0\0' >e.tile
 printf 'i3dm\1\0\0\0' >f.tile
-for pair in a.bin:FBX b.stl:STL c.dae:COLLADA d.usda:USD "e.tile:a tile of 3D Tiles" "f.tile:a tile of 3D Tiles"; do
+for pair in a.bin:FBX b.stl:STL c.dae:COLLADA d.usda:USD g.usdc:USD "e.tile:a tile of 3D Tiles" "f.tile:a tile of 3D Tiles"; do
 	run "${pair%:*}" out.glb
 	exits 5
 	says "${pair#*:} is not read"
