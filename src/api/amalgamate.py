@@ -87,6 +87,7 @@ class Amalgamation:
 	def __init__(self, sources):
 		self.seen = {'nmtan.h'}
 		self.lines = []
+		self.level = ''
 		self.includes = []
 		self.moved = {}  # what headers have external, by name: its definition comes in their place
 		counts = {}
@@ -144,7 +145,11 @@ class Amalgamation:
 		text = read(path)
 		sums = path.startswith('src/tangent/sums/')
 		level = next((level for level, files in LEVELS if files.match(path)), '')
-		self.lines += ['@sums'] * sums + [level] * bool(level)
+		if level and level == self.level and self.lines[-1] == '@warm' and not sums:
+			self.lines.pop() # the file before has the same
+		else:
+			self.lines += ['@sums'] * sums + [level] * bool(level)
+		self.level = level
 		base = os.path.basename(path)[:-2]
 		self.add(path, self.renamed(own_names(text) & self.shared, base))
 		self.lines += ['#undef ' + name for name in re.findall(r'^#define (\w+)', text, re.M)

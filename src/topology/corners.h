@@ -42,15 +42,13 @@ typedef struct nt_triangle_ranges {
 } nt_triangle_ranges;
 
 /* Without threads there is one range. */
-#ifdef NT_NO_THREADS
-enum { NT_MOST_SWEEPS = 1 };
-#else
-enum { NT_MOST_SWEEPS = 2 };
-#endif
-
 static inline unsigned nt_sweeps(const nt_triangle_ranges *ranges)
 {
-	return NT_MOST_SWEEPS > 1 && ranges->two_sweeps ? 2 : 1;
+#ifdef NT_NO_THREADS
+	return (void)ranges, 1;
+#else
+	return ranges->two_sweeps ? 2 : 1;
+#endif
 }
 
 /* The cut of a triangle with these corners of the face that begins at corner `first`. */

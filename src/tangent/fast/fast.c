@@ -165,7 +165,7 @@ static nmtan_status prepare(nt_fast *fast, const nt_fast_plan *plan, bool binned
 	status = nt_cut_faces(fast->solve->mesh, fast->triangle_count, scratch, &fast->flags, &fast->triangles);
 	if (status)
 		return status;
-	const bool twice = NT_MOST_SWEEPS > 1 && ranges > 1 && !binned && is_swept_twice(fast);
+	const bool twice = ranges > 1 && !binned && is_swept_twice(fast);
 	status = nt_cut_ranges(fast->flags, fast->triangle_count, ranges * (twice ? 2 : 1), scratch, &fast->ranges);
 	fast->ranges.count = ranges;
 	fast->ranges.two_sweeps = twice;
