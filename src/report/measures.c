@@ -230,11 +230,14 @@ static nt_status check_shared(nt_check *check)
 		return NT_ERROR_MEMORY;
 	memset(sides, 0, vertex_count);
 	for (size_t t = 0; t < s->triangle_count; t++) {
-		/* both halves of a folded quad may have the quad's tangents */
+		/* both halves of a folded quad may have the quad's tangents; each may have its own */
 		const int folded = nt_quad_orientation(check, t);
 		const int sign = folded ? folded : nt_settled_orientation(check, t);
-		for (size_t c = 3 * t; c < 3 * t + 3 && sign && sign != NT_FOLDED_EITHER; c++)
-			sides[nt_side_vertex(s, c)] |= sign > 0 ? UNMIRRORED : MIRRORED;
+		for (size_t c = 3 * t; c < 3 * t + 3 && sign && sign != NT_FOLDED_EITHER; c++) {
+			const bool own = folded && check->stored == NT_STORED_AUTHORED;
+			const float w = own ? nt_stored_tangent(check, nt_side_corner(s, c))[3] : (float)sign;
+			sides[nt_side_vertex(s, c)] |= w > 0 ? UNMIRRORED : MIRRORED;
+		}
 	}
 	nt_tally shared = {.code = NT_CODE_TAN_MIRROR_SHARED_VERTEX};
 	for (size_t v = 0; v < vertex_count; v++)

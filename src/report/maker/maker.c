@@ -2,6 +2,7 @@
 #include "report/maker/maker.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 #include "api/tangents.h"
 #include "base/angle.h"
@@ -14,6 +15,9 @@ static const double BYTE_DEGREES = 1.0, OTHER_DEGREES = 0.1, DEGREES = 57.295779
 
 /* From here on no other maker is tried: the dialects of MikkTSpace differ at a few corners. */
 static const double CERTAIN = 0.99999;
+
+/* From here on some faces may have been solved as triangles and some as quads. */
+static const double MAY_BE_BOTH = 0.5;
 
 /* Each triangle at a vertex adds the number of its next vertex and takes that of the one before: around a closed fan
  * nothing is left. The numbers are spread over 64 bits (splitmix64), so that nothing else adds up to 0. */
@@ -122,6 +126,33 @@ nt_status nt_maker_compare(const nt_mesh *mesh, const uint8_t *halves, const uin
 	return status;
 }
 
+/* Whether each corner's tangent is that of MikkTSpace on triangles or on quads: a folded quad is written as triangles
+ * of their own signs beside others that were solved as quads (pipeline/quads.c), and exporters triangulate some faces
+ * before the solve. `fresh` receives for each corner the nearer one of both. */
+static nt_status compare_both(const nt_mesh *mesh, const uint8_t *halves, const uint64_t *border, unsigned threads,
+	float *fresh, nt_maker *maker)
+{
+	nt_maker triangles = {.quads = false};
+	float *other = nt_alloc(mesh->corner_count, 4 * sizeof *other);
+	nt_status status = NT_ERROR_MEMORY;
+	if (other)
+		status = nt_maker_compare(mesh, NULL, border, threads, other, &triangles);
+	if (!status)
+		status = nt_maker_compare(mesh, halves, border, threads, fresh, maker);
+	for (size_t c = 0; !status && c < mesh->corner_count; c++) {
+		const nt_dvec3 t = nt_dvec3_load(mesh->tangents + 4 * (mesh->indices ? mesh->indices[c] : c));
+		if (nt_dvec3_dot(t, nt_dvec3_load(other + 4 * c)) > nt_dvec3_dot(t, nt_dvec3_load(fresh + 4 * c)))
+			memcpy(fresh + 4 * c, other + 4 * c, 4 * sizeof *other);
+	}
+	free(other);
+	if (!status) {
+		nmtan_stored_uv stored;
+		const nmtan_mesh view = nt_mesh_view(mesh, &stored);
+		compare(mesh, &view, halves, border, fresh, maker);
+	}
+	return status;
+}
+
 nt_status nt_find_maker(const nt_mesh *mesh, const uint8_t *halves, const uint64_t *border, unsigned threads,
 	float *fresh, nt_maker *maker)
 {
@@ -142,6 +173,16 @@ nt_status nt_find_maker(const nt_mesh *mesh, const uint8_t *halves, const uint64
 		maker->last = false;
 		if (next.agreement > maker->agreement)
 			*maker = next;
+	}
+	if (halves && maker->agreement < NT_MAKER_SHARE && maker->agreement >= MAY_BE_BOTH &&
+		maker->method == NMTAN_METHOD_MIKKTSPACE) {
+		nt_maker both = {.quads = true, .last = true};
+		const nt_status status = compare_both(mesh, halves, border, threads, fresh, &both);
+		if (status)
+			return status;
+		maker->last = false;
+		if (both.agreement >= NT_MAKER_SHARE)
+			*maker = both;
 	}
 	maker->off_mikktspace = off_mikktspace;
 	maker->known = maker->agreement >= NT_MAKER_SHARE;

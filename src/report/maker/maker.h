@@ -72,9 +72,10 @@ nt_status nt_maker_compare(const nt_mesh *mesh, const uint8_t *halves, const uin
 
 /* Finds the maker of a mesh's own tangents: the first of MikkTSpace as published and sorted, area, lengyel and robust,
  * each on triangles and on quads, with which most corners agree, if these are NT_MAKER_SHARE of all. If nearly all
- * agree, no other is tried; if none is it and a texture transform turns the mesh's coordinates, all are tried on
- * those of the file. `halves` [face_count]: enum nt_half; NULL: no quads; `border` as above. `fresh` receives the
- * tangents of the last one that is tried. Returns NT_OK or NT_ERROR_MEMORY. */
+ * agree, no other is tried; if none is it, each corner may have MikkTSpace's tangent of triangles or of quads; if a
+ * texture transform turns the mesh's coordinates, all are tried on those of the file. `halves` [face_count]: enum
+ * nt_half; NULL: no quads; `border` as above. `fresh` receives the tangents of the last one that is tried. Returns
+ * NT_OK or NT_ERROR_MEMORY. */
 nt_status nt_find_maker(const nt_mesh *mesh, const uint8_t *halves, const uint64_t *border, unsigned threads,
 	float *fresh, nt_maker *maker);
 
