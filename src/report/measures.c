@@ -229,14 +229,15 @@ static nt_status check_shared(nt_check *check)
 	if (!sides)
 		return NT_ERROR_MEMORY;
 	memset(sides, 0, vertex_count);
+	const float right = check->facts->maker.inverted ? -1.0f : 1.0f;
 	for (size_t t = 0; t < s->triangle_count; t++) {
 		/* both halves of a folded quad may have the quad's tangents; each may have its own */
 		const int folded = nt_quad_orientation(check, t);
 		const int sign = folded ? folded : nt_settled_orientation(check, t);
 		for (size_t c = 3 * t; c < 3 * t + 3 && sign && sign != NT_FOLDED_EITHER; c++) {
 			const bool own = folded && check->stored == NT_STORED_AUTHORED;
-			const float w = own ? nt_stored_tangent(check, nt_side_corner(s, c))[3] : (float)sign;
-			sides[nt_side_vertex(s, c)] |= w > 0 ? UNMIRRORED : MIRRORED;
+			const float w = own ? right * nt_stored_tangent(check, nt_side_corner(s, c))[3] : (float)sign;
+			sides[nt_side_vertex(s, c)] |= w > 0 ? UNMIRRORED : w < 0 ? MIRRORED : 0;
 		}
 	}
 	nt_tally shared = {.code = NT_CODE_TAN_MIRROR_SHARED_VERTEX};

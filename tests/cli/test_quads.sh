@@ -184,6 +184,11 @@ says "9 quads cross themselves in UV space"
 run -q --check --fail-on=never --report=f.json own.glb
 is "$(value f.json "$warnings")" "[]"
 is "$(value f.json "$made")" "[('mikktspace', 'quads', 'right', 1, 0.1)]"
+# nor are vertices shared by both windings, whatever the convention of w is
+gltf own.glb inverted 'const n = g.meshes[0].primitives[0].attributes.TANGENT;
+	for (let v = 0; v < g.accessors[n].count; v++) { const w = at(n, v) + 12; bytes[0].writeFloatLE(-bytes[0].readFloatLE(w), w); }'
+run -q --check --fail-on=never --report=f.json inverted.gltf
+is "$(value f.json "$made, 'TAN_MIRROR_SHARED_VERTEX' in $codes")" "([('mikktspace', 'quads', 'inverted', 1, 0.1)], False)"
 
 # As Blender exports a mesh of several materials: solved as one, written as primitives.
 scene "tangents that were made for all primitives of a mesh are known away from the borders"
