@@ -284,7 +284,8 @@ static bool is_owner(const nt_output *output, const char *path, const char *name
 	return is;
 }
 
-/* Only documents that are called as the main file but for the ending have sidecars of these names. */
+/* Only documents that are called as the main file but for the ending, which may be none, have sidecars of these names.
+ * The main file is one of them. */
 static bool is_needed(const nt_output *output, const char *folder, const char *name)
 {
 	const char *main = nt_last_part(output->main->path), *dot = strrchr(main, '.');
@@ -295,7 +296,8 @@ static bool is_needed(const nt_output *output, const char *folder, const char *n
 	for (size_t at = 0; at < names.size && !needed; at += strlen(names.data + at) + 1) {
 		const char *other = names.data + at;
 		struct stat status;
-		if (strncmp(other, main, stem) != 0 || other[stem] != '.' || strstr(other, for_the_time_being))
+		if (strncmp(other, main, stem) != 0 || (other[stem] && other[stem] != '.') ||
+			strstr(other + stem, for_the_time_being))
 			continue;
 		path.size = 0;
 		nt_buffer_format(&path, "%s%s", folder, other);
