@@ -16,8 +16,8 @@ static const double BYTE_DEGREES = 1.0, OTHER_DEGREES = 0.1, DEGREES = 57.295779
 /* From here on no other maker is tried: the dialects of MikkTSpace differ at a few corners. */
 static const double CERTAIN = 0.99999;
 
-/* From here on some faces may have been solved as triangles and some as quads. */
-static const double MAY_BE_BOTH = 0.5;
+/* From this share of the corners away from the border on, it is worth to ask whether each agrees with one of two. */
+static const double MAY_BE_BOTH = 0.9;
 
 /* Each triangle at a vertex adds the number of its next vertex and takes that of the one before: around a closed fan
  * nothing is left. The numbers are spread over 64 bits (splitmix64), so that nothing else adds up to 0. */
@@ -52,6 +52,20 @@ nt_status nt_maker_border(const nt_mesh *mesh, uint64_t *border)
 	return left ? NT_OK : NT_ERROR_MEMORY;
 }
 
+/* Corners away from the border that agree with one of those that are tried. */
+typedef struct either {
+	uint64_t *agreeing;     /* bits */
+	size_t judged, agreed;  /* agreed: of those that the last one judged */
+} either;
+
+static void note_either(either *any, size_t corner, bool agrees)
+{
+	if (agrees)
+		nt_bit_set(any->agreeing, corner);
+	any->judged++;
+	any->agreed += nt_bit(any->agreeing, corner);
+}
+
 /* Counts at corners. */
 typedef struct tally {
 	size_t judged, agreeing, inverted;
@@ -73,9 +87,9 @@ static void add(tally *to, const tally *from)
 }
 
 /* Looks at the corners of triangles with an area in texture coordinates, and of quads that have one: of halves that
- * cancel MikkTSpace may make no tangent, and what stands for it proves nothing. */
+ * cancel MikkTSpace may make no tangent, and what stands for it proves nothing. any: NULL, or what was tried before. */
 static void compare(const nt_mesh *mesh, const nmtan_mesh *view, const uint8_t *halves, const uint64_t *border,
-	const float *fresh, nt_maker *maker)
+	const float *fresh, nt_maker *maker, either *any)
 {
 	const double near = tan(maker->degrees / DEGREES) * tan(maker->degrees / DEGREES);
 	tally inside = {0}, outside = {0};
@@ -89,13 +103,17 @@ static void compare(const nt_mesh *mesh, const nmtan_mesh *view, const uint8_t *
 		if (nt_folded_orientation(mesh, halves, t) == NT_FOLDED_EITHER)
 			continue;
 		for (size_t k = 0; k < 3; k++) {
-			tally *of = border && nt_bit(border, 3 * t + k) ? &outside : &inside;
+			const bool at_border = border && nt_bit(border, 3 * t + k);
+			tally *of = at_border ? &outside : &inside;
 			const nt_dvec3 a = nt_dvec3_load(mesh->tangents + 4 * v[k]);
 			const nt_dvec3 b = nt_dvec3_load(fresh + 4 * (3 * t + k));
 			const nt_dvec3 cross = nt_dvec3_cross(a, b);
 			const double dot = nt_dvec3_dot(a, b), square = nt_dvec3_dot(cross, cross);
+			const bool agrees = dot > 0.0 && square <= near * dot * dot;
 			of->judged++;
-			of->agreeing += dot > 0.0 && square <= near * dot * dot;
+			of->agreeing += agrees;
+			if (any && !at_border)
+				note_either(any, 3 * t + k, agrees);
 			of->inverted += mesh->tangents[4 * v[k] + 3] * fresh[4 * (3 * t + k) + 3] < 0.0f;
 			of->by_degrees[square >= 0.0 ? (size_t)(2.0 * DEGREES * nt_angle(sqrt(square), dot)) : 360]++;
 		}
@@ -111,8 +129,8 @@ static void compare(const nt_mesh *mesh, const nmtan_mesh *view, const uint8_t *
 	maker->most_degrees = 0.5 * (double)(half + 1);
 }
 
-nt_status nt_maker_compare(const nt_mesh *mesh, const uint8_t *halves, const uint64_t *border, unsigned threads,
-	float *fresh, nt_maker *maker)
+static nt_status solve_and_compare(const nt_mesh *mesh, const uint8_t *halves, const uint64_t *border, unsigned threads,
+	float *fresh, nt_maker *maker, either *any)
 {
 	nmtan_stored_uv stored;
 	const nmtan_mesh view = nt_mesh_view(mesh, &stored);
@@ -121,9 +139,17 @@ nt_status nt_maker_compare(const nt_mesh *mesh, const uint8_t *halves, const uin
 	maker->degrees = mesh->byte_tangents ? BYTE_DEGREES : OTHER_DEGREES;
 	const uint8_t *solved = maker->quads ? halves : NULL;
 	const nt_status status = nt_status_of(nt_tangents_of_halves(&view, solved, &options, &output, NULL));
+	if (any)
+		any->judged = any->agreed = 0;
 	if (!status)
-		compare(mesh, &view, solved, border, fresh, maker);
+		compare(mesh, &view, solved, border, fresh, maker, any);
 	return status;
+}
+
+nt_status nt_maker_compare(const nt_mesh *mesh, const uint8_t *halves, const uint64_t *border, unsigned threads,
+	float *fresh, nt_maker *maker)
+{
+	return solve_and_compare(mesh, halves, border, threads, fresh, maker, NULL);
 }
 
 /* Whether each corner's tangent is that of MikkTSpace on triangles or on quads: a folded quad is written as triangles
@@ -148,13 +174,14 @@ static nt_status compare_both(const nt_mesh *mesh, const uint8_t *halves, const 
 	if (!status) {
 		nmtan_stored_uv stored;
 		const nmtan_mesh view = nt_mesh_view(mesh, &stored);
-		compare(mesh, &view, halves, border, fresh, maker);
+		compare(mesh, &view, halves, border, fresh, maker, NULL);
 	}
 	return status;
 }
 
-nt_status nt_find_maker(const nt_mesh *mesh, const uint8_t *halves, const uint64_t *border, unsigned threads,
-	float *fresh, nt_maker *maker)
+/* any: room for MikkTSpace on triangles and on quads; NULL: there are no quads. */
+static nt_status try_makers(const nt_mesh *mesh, const uint8_t *halves, const uint64_t *border, unsigned threads,
+	float *fresh, nt_maker *maker, either *any)
 {
 	static const nmtan_method methods[] = {NMTAN_METHOD_MIKKTSPACE, NMTAN_METHOD_MIKKTSPACE_SORTED,
 		NMTAN_METHOD_AREA, NMTAN_METHOD_LENGYEL, NMTAN_METHOD_ROBUST};
@@ -165,7 +192,8 @@ nt_status nt_find_maker(const nt_mesh *mesh, const uint8_t *halves, const uint64
 		nt_maker next = {.method = methods[i / 2], .quads = i % 2, .last = true};
 		if (next.quads && !halves)
 			continue;
-		const nt_status status = nt_maker_compare(mesh, halves, border, threads, fresh, &next);
+		const nt_status status = solve_and_compare(mesh, halves, border, threads, fresh, &next,
+			next.method == NMTAN_METHOD_MIKKTSPACE ? any : NULL);
 		if (status)
 			return status;
 		if (i == 0)
@@ -174,8 +202,7 @@ nt_status nt_find_maker(const nt_mesh *mesh, const uint8_t *halves, const uint64
 		if (next.agreement > maker->agreement)
 			*maker = next;
 	}
-	if (halves && maker->agreement < NT_MAKER_SHARE && maker->agreement >= MAY_BE_BOTH &&
-		maker->method == NMTAN_METHOD_MIKKTSPACE) {
+	if (any && maker->agreement < NT_MAKER_SHARE && (double)any->agreed >= MAY_BE_BOTH * (double)any->judged) {
 		nt_maker both = {.quads = true, .last = true};
 		const nt_status status = compare_both(mesh, halves, border, threads, fresh, &both);
 		if (status)
@@ -186,12 +213,27 @@ nt_status nt_find_maker(const nt_mesh *mesh, const uint8_t *halves, const uint64
 	}
 	maker->off_mikktspace = off_mikktspace;
 	maker->known = maker->agreement >= NT_MAKER_SHARE;
+	return NT_OK;
+}
+
+nt_status nt_find_maker(const nt_mesh *mesh, const uint8_t *halves, const uint64_t *border, unsigned threads,
+	float *fresh, nt_maker *maker)
+{
+	const size_t words = nt_bit_words(mesh->corner_count);
+	either any = {.agreeing = halves ? nt_calloc(words, sizeof *any.agreeing) : NULL};
+	nt_status status = halves && !any.agreeing ? NT_ERROR_MEMORY : NT_OK;
+	if (!status)
+		status = try_makers(mesh, halves, border, threads, fresh, maker, halves ? &any : NULL);
+	free(any.agreeing);
+	if (status)
+		return status;
 	if (maker->known || !mesh->solve_texcoords)
 		return NT_OK;
 	nt_mesh plain = *mesh;
 	plain.solve_texcoords = NULL;
 	nt_maker of_plain;
-	const nt_status status = nt_find_maker(&plain, halves, border, threads, fresh, &of_plain);
+	const double off_mikktspace = maker->off_mikktspace;
+	status = nt_find_maker(&plain, halves, border, threads, fresh, &of_plain);
 	maker->last = false;
 	if (!status && of_plain.known) {
 		*maker = of_plain;
