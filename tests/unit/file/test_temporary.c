@@ -62,13 +62,15 @@ TEST(a_fault_in_a_commit_ends_the_process)
 	assert_true(child_ends(fault_in_commit));
 }
 
-static atomic_bool holds, released;
+static atomic_bool holds, ends, released;
 
 static void *commit(void *unused)
 {
 	sigset_t before;
 	nt_temporaries_hold(&before);
 	atomic_store(&holds, true);
+	while (!atomic_load(&ends))
+		usleep(100);
 	usleep(100000);
 	atomic_store(&released, true);
 	nt_temporaries_release(&before);
@@ -79,6 +81,8 @@ static void *commit(void *unused)
 static void *commit_later(void *unused)
 {
 	sigset_t before;
+	while (!atomic_load(&ends))
+		usleep(100);
 	usleep(50000);
 	nt_temporaries_hold(&before);
 	_exit(4);
@@ -92,6 +96,7 @@ static void fault_beside_commit(void)
 		_exit(2);
 	while (!atomic_load(&holds))
 		usleep(100);
+	atomic_store(&ends, true);
 	nt_temporaries_remove_all();
 	if (!atomic_load(&released) || pthread_join(other, NULL))
 		_exit(3);
