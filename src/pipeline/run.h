@@ -159,7 +159,7 @@ typedef struct nt_summary {
 	nt_morph_cost morph_cost; /* of the targets whose tangents were written */
 	size_t made_maps;        /* images of a glTF that --flip-green, --bump or --fix turned or made normal maps */
 	nt_weld_result welded;   /* vertices of the pools that --weld looked at, before and after */
-	nt_block_result packed;        /* what Draco's blocks have of them */
+	nt_block_result packed;  /* what Draco's blocks have of them */
 	nt_finding_list findings;
 	uint64_t bytes_read;     /* of the inputs, as far as known; what is only copied is not */
 	uint64_t bytes_copied;   /* from an input to the output as they are */

@@ -309,11 +309,11 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"nobody sees: less than eight texels high (of 2048 x 2048), thinner in space than a twentieth of the "
 		"length, or in a row below a hundred-thousandth of the mesh's area. Nor of faces that are reversed "
 		"among their neighbours (MESH_INCONSISTENT_WINDING), or folded back onto them, whose layout is right. "
-		"Nor in a mesh whose layout is out of order anyway: where more of its area is of the rarer winding in "
-		"other islands (UV_MIXED_WINDING_ISLAND), or, in the same island, flipped and too small to be told or "
-		"without area in UV space (UV_DEGENERATE_TRIANGLE), or more edges have inconsistent winding. An info "
-		"if no texture of a glTF uses the coordinates or no material of it needs tangents (of an OBJ: of "
-		"its glTF), and up to a thousandth of the mesh's area.",
+		"Nor in a mesh whose layout is out of order anyway: where more of its area has the rarer winding of an "
+		"island and is not flipped (UV_MIXED_WINDING_ISLAND), or, in the same island, flipped and too small to "
+		"be told or without area in UV space (UV_DEGENERATE_TRIANGLE), or more edges have inconsistent "
+		"winding. An info if no texture of a glTF uses the coordinates or no material of it needs tangents "
+		"(of an OBJ: of its glTF), and up to a thousandth of the mesh's area.",
 		"Look for them in the UV editor (Blender: Overlays > Display Stretch). If the triangle bridges two "
 		"parts of the layout, a seam is missing: mark it (Edge > Mark Seam), and unwrap again. If a corner "
 		"lies on the wrong side of its neighbours, move it back, or relax the knot (UV > Minimize Stretch).",

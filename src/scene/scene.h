@@ -403,7 +403,7 @@ typedef struct nt_scene {
 	nt_rounding rounding; /* of all meshes that were written */
 	nt_morph_cost morph_cost; /* the same */
 	nt_weld_result welded;    /* the same */
-	nt_block_result packed;         /* the same */
+	nt_block_result packed;   /* the same */
 	nt_shared_vertices shared; /* the same */
 	const bool *turned_images; /* [turned_image_count] images of a glTF whose green --fix turns; NULL: all that
 	                              need it, if any are turned */

@@ -215,10 +215,9 @@ nt_texcoord_grid nt_texcoord_grid_of(const nt_surface *s)
 }
 
 /*
- * On a grid each has moved by up to half a step. To
- * first order the determinant, by that of a corner in u, moves by half a step times the difference in v of both others;
- * of all three corners that is a step times the triangle's height along v, and u alike. So its height over its longest
- * side is at most the root of two steps.
+ * On a grid each coordinate has moved by up to half a step. To first order the determinant, by that of a corner in u,
+ * moves by half a step times the difference in v of both others; of all three corners that is a step times the
+ * triangle's height along v, and u alike. So its height over its longest side is at most the root of two steps.
  */
 bool nt_may_be_turned(const nt_surface *s, nt_texcoord_grid *grid, size_t t)
 {
