@@ -345,6 +345,8 @@ for name in o:.gltf p: q.new-1:.gltf; do
 	says "the data of ${name%:*}.bin stays in ${name%:*}.new-"
 	is "$main $(state $main)" "$main $(state o.gltf)"
 done
+run --buffers=copy ../in/m.gltf p.gltf # wants the same names
+is "$(state p)" "$(state o.gltf)"
 
 scene "killed anywhere, beside somebody else's file"
 mkdir before && echo somebody >before/o.bin
