@@ -308,7 +308,8 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"KHR_mesh_quantization and texts with few decimals have them: heights up to 1.4 steps. Nor of what "
 		"nobody sees: less than eight texels high (of 2048 x 2048), thinner in space than a twentieth of the "
 		"length, or in a row below a hundred-thousandth of the mesh's area. Nor of faces that are reversed "
-		"among their neighbours (MESH_INCONSISTENT_WINDING), or folded back onto them, whose layout is right. "
+		"among their neighbours (MESH_INCONSISTENT_WINDING), or folded back by more than 90 degrees: their "
+		"layout is right. "
 		"Nor in a mesh whose layout is out of order anyway: where more of its area has the rarer winding of an "
 		"island and is not flipped (UV_MIXED_WINDING_ISLAND), or, in the same island, flipped and too small to "
 		"be told or without area in UV space (UV_DEGENERATE_TRIANGLE), or more edges have inconsistent "
@@ -332,9 +333,10 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"{count} {triangle has|triangles have} no area in UV space",
 		"The three texture coordinates are collinear: there is no direction in which u grows, so the tangent "
 		"comes from a neighbour or from the normal. Nothing is said of triangles that have no area in space "
-		"either (POS_DEGENERATE_TRIANGLE), and below a hundred-thousandth of the mesh's area. A warning when "
-		"such triangles are more than 1 % of the mesh's area, unless no material of a glTF needs tangents (of "
-		"an OBJ: of its glTF).",
+		"either (POS_DEGENERATE_TRIANGLE), below a hundred-thousandth of the mesh's area, and of a glTF's mesh "
+		"that neither has nor needs tangents, if no texture uses the coordinates. A warning when such "
+		"triangles are more than 1 % of the mesh's area, unless no material of a glTF needs tangents (of an "
+		"OBJ: of its glTF).",
 		"Unwrap these triangles (Blender: UV > Smart UV Project) if they are visible and normal mapped.",
 		"two triangles, of which one has UVs (0,0), (1,0), (2,0)"),
 	ROW(UV_NEAR_DEGENERATE, INFO, "w-i", EXPORT, NULL,
@@ -344,9 +346,9 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"90 degrees. The coordinates are coincident if rounding may turn a side between them by one degree, "
 		"else collinear. The finding gives the smallest relative determinant |det| / (|e1| |e2|) of a "
 		"triangle's two longest sides. Nothing is said of triangles that are as thin in space, up to twice as "
-		"wide by their length, and below a hundred-thousandth of the mesh's area. A warning when they are "
-		"more than 1 % of the mesh's area, unless no material of a glTF needs tangents (of an OBJ: of its "
-		"glTF).",
+		"wide by their length, below a hundred-thousandth of the mesh's area, and of a glTF's mesh that "
+		"neither has nor needs tangents. A warning when they are more than 1 % of the mesh's area, unless no "
+		"material of a glTF needs tangents (of an OBJ: of its glTF).",
 		"If they are normal mapped, give them more room in the texture (Blender: UV > Unwrap, or UV > Smart UV "
 		"Project). Move an island that is tiles away from the origin back (Blender: UV > Pack Islands).",
 		"a triangle with UVs (0,1000), (1,1000), (0,1000.001)"),

@@ -48,9 +48,6 @@ static const double FLIPPED_SHARE = 0.05, SINGLE_SHARE = 0.1, MINORITY_SHARE = 0
  */
 static const double LEAST_HEIGHT = 8.0 / 2048.0, NEEDLE = 0.05;
 
-/* Two faces lie on each other in space up to an angle of 10 degrees: -cos of that between their normals. */
-static const double FOLDED = 0.984807753012208;
-
 /* How much is wound one way. */
 typedef struct extent {
 	size_t triangles;
@@ -108,12 +105,13 @@ static nt_dvec3 normal_of(const nt_surface *s, uint32_t side)
 		nt_dvec3_sub(nt_dvec3_load(nt_side_position(s, first + 2)), a));
 }
 
-/* Whether one of the triangles at two sides of an edge shows its back where the other shows its front. */
+/* Whether one of the triangles at two sides of an edge shows its back where the other shows its front: they are folded
+ * by more than a right angle, as at the rim of a blade, where a planar projection is mirrored on the other side. A
+ * reader refused three of three between 115 and 156 degrees, and agreed with five of nine up to 70. */
 static bool is_turned_over(const nt_surface *s, uint32_t a, uint32_t b)
 {
 	const nt_dvec3 x = normal_of(s, a), y = normal_of(s, b);
-	return nt_side_point(s, a) == nt_side_point(s, b) ||
-		nt_dvec3_dot(x, y) < -FOLDED * sqrt(nt_dvec3_dot(x, x)) * sqrt(nt_dvec3_dot(y, y));
+	return nt_side_point(s, a) == nt_side_point(s, b) || nt_dvec3_dot(x, y) < 0.0;
 }
 
 static void measure_patches(const nt_check *check, patches *p)

@@ -337,6 +337,8 @@ static void report_near_degenerate(nt_check *check, nt_part *all, nt_severity se
 static void report_triangles(nt_check *check, nt_part *all, size_t from_neighbour)
 {
 	const double total = check->total_area > 0.0 ? check->total_area : 1.0;
+	/* rounding is seen in tangents alone, what has no area in a texture as well */
+	const bool of_tangents = nt_needs_tangents(check) || check->stored != NT_STORED_NONE;
 	nt_tally *tallies = all->tallies;
 	nt_severity severities[NT_PART_TALLIES];
 	for (size_t k = MISSING; k <= AGAINST; k++) {
@@ -362,7 +364,7 @@ static void report_triangles(nt_check *check, nt_part *all, size_t from_neighbou
 	if (no_area->count && no_area->count + (size_t)all->sums[FLAT_IN_BOTH] == check->surface.triangle_count) {
 		no_area->code = NT_CODE_UV_UNMAPPED;
 		nt_check_report_as(check, no_area, severities[NO_AREA], NULL);
-	} else if (nt_is_visible(check, no_area->area)) {
+	} else if (nt_is_visible(check, no_area->area) && (of_tangents || !check->mesh->untextured)) {
 		/* nobody gets any where none are made */
 		const bool made = check->mesh->decision == NT_DECISION_SOLVE;
 		char neighbours[80] = "", normals[80] = "";
@@ -377,7 +379,7 @@ static void report_triangles(nt_check *check, nt_part *all, size_t from_neighbou
 			100.0 * no_area->area / total, neighbours, normals);
 	}
 
-	if (nt_is_visible(check, tallies[NEAR].area))
+	if (nt_is_visible(check, tallies[NEAR].area) && of_tangents)
 		report_near_degenerate(check, all, severities[NEAR], 100.0 * tallies[NEAR].area / total);
 
 	nt_check_report_as(check, &tallies[AGAINST], severities[AGAINST], "%.3g %% of the area",

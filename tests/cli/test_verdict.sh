@@ -1479,4 +1479,17 @@ for format in glb gltf ply; do
 	[ -z "$command" ] || eval "\"\$NMTAN\" -q $command" || wrong "$format: $command: $?"
 done
 
+scene "UVs without area, or next to none, are no matter where there are neither tangents nor a texture that uses them"
+printf '%s\n' "v 0 0 0" "v 1 0 0" "v 0 1 0" "v 1 1 0" "v 2 0 0" "v 2 1 0" \
+	"vt 0 0" "vt 1 0" "vt 0 1" "vt .5 0" "vt 0 1000" "vt 1 1000" "vt 0 1000.001" \
+	"f 1/1 2/2 3/3" "f 2/1 4/4 3/2" "f 2/5 5/6 6/7" >thin.obj
+run -q --only=all thin.obj made.gltf
+gltf made.gltf none 'delete g.meshes[0].primitives[0].attributes.TANGENT;'
+gltf none.gltf painted 'g.images = [{uri: "data:image/png;base64,"}]; g.textures = [{source: 0}];
+	g.materials = [{pbrMetallicRoughness: {baseColorTexture: {index: 0}}}]; g.meshes[0].primitives[0].material = 0;'
+for row in "made 2" "none 0" "painted 1"; do
+	run --check --fail-on=never ${row% *}.gltf
+	is "$row: $(grep -c "UV_\(NEAR_\)*DEGENERATE" "$WORK/out.txt")" "$row: ${row#* }"
+done
+
 done_testing

@@ -237,9 +237,9 @@ TEST(triangles_area_and_texels_say_whether_one_is_flipped)
 			for (uint32_t v = 0; v < h->mesh.vertex_count; v++)
 				set_uv(h, v, side / 2048 * h->texcoords[v][0], side / 2048 * h->texcoords[v][1]);
 		}
-		/* the face at the corner is folded over its diagonal in space, too, but for 9 or 11 degrees */
+		/* the face at the corner is folded over its diagonal in space, too, but for 89 or 91 degrees */
 		if (i == FOLDED || i == OPEN) {
-			const float angle = (i == FOLDED ? 9.0f : 11.0f) * (float)(3.14159265358979 / 180.0);
+			const float angle = (i == FOLDED ? 89.0f : 91.0f) * (float)(3.14159265358979 / 180.0);
 			set_uv(h, at(N, 0), N - 0.75f, 0.75f);
 			h->positions[at(N, 0)][0] = N - 0.5f - 0.5f * cosf(angle);
 			h->positions[at(N, 0)][1] = 0.5f + 0.5f * cosf(angle);
