@@ -241,7 +241,8 @@ static nt_status note_slots(nt_gltf *document, nt_gltf_material *all, const nt_j
 	return status;
 }
 
-/* The sets that textures of a material are looked up with: every "...Texture" in it, of extensions, too. */
+/* The sets that textures of a material are looked up with: every "...Texture" in it, of extensions, too, but not of
+ * extras. */
 static uint32_t textured_sets(const nt_json_value *value)
 {
 	uint32_t sets = 0;
@@ -252,7 +253,8 @@ static uint32_t textured_sets(const nt_json_value *value)
 		const char *key = nt_json_key(value, i, &length);
 		const nt_json_value *member = nt_json_at(value, i);
 		if (length < 6 || memcmp(key + length - 6, "exture", 6) != 0 || !nt_json_find(member, "index")) {
-			sets |= textured_sets(member);
+			if (length != 6 || memcmp(key, "extras", 6) != 0)
+				sets |= textured_sets(member);
 			continue;
 		}
 		uint64_t set = 0;

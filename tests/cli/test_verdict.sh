@@ -52,6 +52,7 @@ while IFS='|' read -r severity uses material; do
 		"$material [('$severity', '1 triangle is flipped: 2 % of the area of 50, in UV set 0${uses:+, which no texture uses}')]"
 done <<-'END'
 	info|none|{}
+	info|none|{extras: {ownTexture: {index: 0}}}
 	info||{pbrMetallicRoughness: {baseColorTexture: {index: 0}}}
 	warning||{normalTexture: {index: 0}}
 	info|none|{normalTexture: {index: 0, texCoord: 1}}
