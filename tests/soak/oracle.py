@@ -55,20 +55,20 @@ RULES = 'rules of flipped, nearly degenerate and mirrored triangles (309a1b1f, 3
 # Changes that are meant: (kind, pattern of "set path detail", why). The first that fits is taken.
 LAYOUT = [('layout', '', 'the same values lie elsewhere, or in a view of another number')]
 # Since 956a97d6.
-GRID = 'what rounding to a grid may have turned, and below eight texels (86124ecd, c43bbe0d, 0cf081ed, 5bad646e)'
+GRID = 'what rounding to a grid may have turned, and below eight texels (86124ecd, c43bbe0d, 0cf081ed, 1e03bf18)'
 LATER = LAYOUT + [
     ('messages', r' UV_FLIPPED_TRIANGLE: -\d+ \+0$', GRID),
     ('report', r' /findings (UV_(FLIPPED_TRIANGLE|MIXED_WINDING_ISLAND|MIRROR_(SEAM|OVERLAP|LONE))|TAN_MIRROR_SHARED_VERTEX): ', GRID),
     ('report', r' /seams: | /files/N/meshes/N/(seam_(count|length)|edges/mirror|islands_by_kind/\w+|islands/N/(kind|covered_share|twin)): ',
      GRID),
     ('report', r" /files/N/(meshes/N/)?verdict: .*( flipped|is folded|; and \d+ more')", GRID),
-    ('report', r' /findings UV_(DEGENERATE_TRIANGLE|UNMAPPED): -(\d+) \+\2$', 'triangles that are flat in space, and words (b33fdc1c, 49e79bbc)'),
+    ('report', r' /findings UV_(DEGENERATE_TRIANGLE|UNMAPPED): -(\d+) \+\2$', 'triangles that are flat in space, and words (b33fdc1c, d8a844a9)'),
     ('report', r'^report \S+\.gl\w+ /files/N/meshes/N/(texture_size|islands/N/texel_density)\S*: \S+ -> None$',
-     'a texture without an image has no picture (bb19a519)'),
-    ('messages', r'^weld .*\.(obj|ply) .*(nothing that --|--weld welds gl|--weld: only glTF made from glTF)', 'only glTF is welded (31a67ce6)'),
-    ('messages', r'^check .* checked, \d+ (primitives?|mesh|meshes), .*": -[01] \+[01]$', 'an OBJ has meshes (31a67ce6)'),
+     'a texture without an image has no picture (a5a27fd0)'),
+    ('messages', r'^weld .*\.(obj|ply) .*(nothing that --|--weld welds gl|--weld: only glTF made from glTF)', 'only glTF is welded (ecd99a82)'),
+    ('messages', r'^check .* checked, \d+ (primitives?|mesh|meshes), .*": -[01] \+[01]$', 'an OBJ has meshes (ecd99a82)'),
     ('messages', r' "nmtan: .*\.gl\w+ -> out\.gl\w+: .*": -[01] \+[01]$',
-     'vertices and triangles of Draco blocks are counted (0f93bf04, ccf74f26)'),
+     'vertices and triangles of Draco blocks are counted (52d073aa, e14c563a)'),
     ('messages', r' NOT_VERIFIED: -1 \+1$', 'words (d3024742)'),
     ('report', r' /findings NOT_VERIFIED: -1 \+1$|verdict: .Look at this: the output could not be verified', 'words (d3024742)'),
 ]
