@@ -272,8 +272,8 @@ static bool is_checked(const nt_mesh *mesh)
 /* Whether two meshes of one geometry are also used alike: all that checks ask besides the geometry. */
 static bool same_uses(const nt_mesh *a, const nt_mesh *b)
 {
-	return a->slots == b->slots && a->untextured == b->untextured && a->reachable == b->reachable &&
-		a->decision == b->decision && !a->pair == !b->pair && a->doubt == b->doubt &&
+	return a->slots == b->slots && a->reachable == b->reachable && a->decision == b->decision &&
+		!a->pair == !b->pair && a->doubt == b->doubt &&
 		a->targets_without_tangents == b->targets_without_tangents && a->wrap[0] == b->wrap[0] &&
 		a->wrap[1] == b->wrap[1] && a->wrap_offset[0] == b->wrap_offset[0] &&
 		a->wrap_offset[1] == b->wrap_offset[1];
@@ -287,6 +287,7 @@ typedef struct checked_mesh {
 	uint32_t first; /* the one that is checked in its place; NT_NONE: nobody */
 	uint32_t next;  /* another first one of the same geometry; NT_NONE: none */
 	size_t alike;   /* of a first one: how many it stands for */
+	bool untextured; /* of a first one: all of these are */
 } checked_mesh;
 
 static uint32_t find_first(const nt_scene *scene, checked_mesh *checked, uint32_t mesh)
@@ -308,11 +309,13 @@ static uint32_t find_first(const nt_scene *scene, checked_mesh *checked, uint32_
 static void find_checked(const nt_scene *scene, checked_mesh *checked)
 {
 	for (uint32_t i = 0; i < scene->mesh_count; i++) {
-		checked[i] = (checked_mesh){NT_NONE, NT_NONE, 0};
+		checked[i] = (checked_mesh){NT_NONE, NT_NONE, 0, true};
 		if (!is_checked(&scene->meshes[i]))
 			continue;
 		checked[i].first = find_first(scene, checked, i);
-		checked[checked[i].first].alike++;
+		checked_mesh *first = &checked[checked[i].first];
+		first->alike++;
+		first->untextured &= scene->meshes[i].untextured;
 	}
 }
 
@@ -356,6 +359,7 @@ static nt_status check_meshes(const nt_check *check, const checked_mesh *checked
 		nt_check one = *check;
 		one.mesh_index = i;
 		one.alike = checked[i].alike;
+		one.untextured = checked[i].untextured;
 		one.mesh = &scene->meshes[i];
 		one.facts = &check->report->meshes[i];
 		one.scratch = &scratch;

@@ -46,6 +46,7 @@ typedef struct nt_check {
 
 	uint32_t mesh_index;
 	size_t alike;             /* meshes that the findings of this one hold for, itself included */
+	bool untextured;          /* all of these are: see nt_mesh */
 	const nt_mesh *mesh;
 	nt_report_mesh *facts;
 	nt_surface surface;

@@ -297,9 +297,9 @@ static void report_tally(nt_check *check, const nt_tally *tally)
 	char set[64] = "";
 	if (nt_format_is_gltf(check->scene->format))
 		snprintf(set, sizeof set, ", in UV set %u%s", mesh->texcoord_set,
-			mesh->untextured ? ", which no texture uses" : "");
+			check->untextured ? ", which no texture uses" : "");
 	nt_check_report_as(check, tally,
-		mesh->untextured ? NT_SEVERITY_INFO : nt_area_severity(check, tally->area),
+		check->untextured ? NT_SEVERITY_INFO : nt_area_severity(check, tally->area),
 		"%.3g %% of the area of %zu%s", 100.0 * tally->area / check->total_area, check->surface.triangle_count,
 		set);
 }

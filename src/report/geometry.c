@@ -364,7 +364,7 @@ static void report_triangles(nt_check *check, nt_part *all, size_t from_neighbou
 	if (no_area->count && no_area->count + (size_t)all->sums[FLAT_IN_BOTH] == check->surface.triangle_count) {
 		no_area->code = NT_CODE_UV_UNMAPPED;
 		nt_check_report_as(check, no_area, severities[NO_AREA], NULL);
-	} else if (nt_is_visible(check, no_area->area) && (of_tangents || !check->mesh->untextured)) {
+	} else if (nt_is_visible(check, no_area->area) && (of_tangents || !check->untextured)) {
 		/* nobody gets any where none are made */
 		const bool made = check->mesh->decision == NT_DECISION_SOLVE;
 		char neighbours[80] = "", normals[80] = "";

@@ -1488,7 +1488,10 @@ run -q --only=all thin.obj made.gltf
 gltf made.gltf none 'delete g.meshes[0].primitives[0].attributes.TANGENT;'
 gltf none.gltf painted 'g.images = [{uri: "data:image/png;base64,"}]; g.textures = [{source: 0}];
 	g.materials = [{pbrMetallicRoughness: {baseColorTexture: {index: 0}}}]; g.meshes[0].primitives[0].material = 0;'
-for row in "made 2" "none 0" "painted 1"; do
+gltf made.gltf pair 'g.images = [{uri: "data:image/png;base64,"}]; g.textures = [{source: 0}];
+	g.materials = [{pbrMetallicRoughness: {baseColorTexture: {index: 0}}}, {}]; const p = g.meshes[0].primitives;
+	p[0].material = 0; p.push({...p[0], material: 1});'
+for row in "made 2" "none 0" "painted 1" "pair 2"; do
 	run --check --fail-on=never ${row% *}.gltf
 	is "$row: $(grep -c "UV_\(NEAR_\)*DEGENERATE" "$WORK/out.txt")" "$row: ${row#* }"
 done
